@@ -1,0 +1,64 @@
+/// @file
+/// The Earth: WGS-84 ellipsoid, geodetic coordinates, the north-east-down frame, gravity.
+/// Gravity is always the force felt at rest on the turning Earth (gravitation plus centrifugal).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace leeway {
+
+/// WGS-84 defining parameters: NGA.STND.0036 (2014), table 3.1.
+namespace wgs84 {
+inline constexpr double kSemiMajorAxisM = 6378137.0;
+inline constexpr double kFlattening = 1.0 / 298.257223563;
+inline constexpr double kGmM3PerS2 = 3.986004418e14;
+inline constexpr double kRotationRateRadps = 7.292115e-5;
+inline constexpr double kEccentricitySq = kFlattening * (2.0 - kFlattening);
+inline constexpr double kSemiMinorAxisM = kSemiMajorAxisM * (1.0 - kFlattening);
+}  // namespace wgs84
+
+/// 9.80665 m/s^2 exactly: the unit behind ug and mg, and the constant gravity model.
+inline constexpr double kStandardGravityMps2 = 9.80665;
+
+/// Earth rotation vector in ECEF, rad/s.
+inline Eigen::Vector3d earth_rotation_e_radps() { return {0.0, 0.0, wgs84::kRotationRateRadps}; }
+
+/// Latitude and longitude in radians, height above the WGS-84 ellipsoid in metres.
+struct Geodetic {
+  double lat_rad{};
+  double lon_rad{};
+  double height_m{};
+};
+
+/// Geodetic to ECEF by GeographicLib::Geocentric; rounding error below 2e-9 m near the Earth.
+Eigen::Vector3d ecef_from_geodetic(const Geodetic& position);
+
+/// ECEF to geodetic by GeographicLib::Geocentric; error below 7e-9 m for heights of -5000 km to
+/// 5000 km (Karney 2011, section 3). Longitude in [-pi, pi].
+Geodetic geodetic_from_ecef(const Eigen::Vector3d& r_e_m);
+
+/// C_en: columns are north, east and down at the position, in ECEF. At the poles north is the
+/// limit along the meridian of the given longitude.
+Eigen::Matrix3d ned_to_ecef(const Geodetic& position);
+
+/// How much of the Earth's gravity a strapdown models.
+enum class GravityModel {
+  kConstant,  ///< 9.80665 m/s^2 along the ellipsoid's normal; within 0.027 m/s^2 at height 0 and
+              ///< 0.06 m/s^2 from -10 to 10 km
+  kJ2,        ///< central term and J2; within 1.2e-4 m/s^2 (12 ug) from -10 km up
+  kNormal,    ///< the exact normal field; within 1.5e-14 m/s^2, rounding included, from -10 km up
+};
+
+/// Gravity in ECEF, m/s^2, at r_e (m). @pre 6.3e6 < |r_e|.
+/// Source: Heiskanen and Moritz, Physical Geodesy, (2-92) for the zonal coefficients; the normal
+/// field is their series to degree 12, whose first term left out is below 1e-15 m/s^2.
+template <GravityModel model>
+Eigen::Vector3d gravity_e(const Eigen::Vector3d& r_e_m);
+
+/// The same, the model chosen at run time.
+Eigen::Vector3d gravity_e(GravityModel model, const Eigen::Vector3d& r_e_m);
+
+/// d gravity_e<kNormal> / d r_e, 1/s^2, symmetric; relative error below 1e-8.
+Eigen::Matrix3d gravity_gradient_e(const Eigen::Vector3d& r_e_m);
+
+}  // namespace leeway

@@ -1,0 +1,247 @@
+#include "leeway/earth.hpp"
+
+#include <GeographicLib/Geocentric.hpp>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "leeway/rotation.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kE2 = wgs84::kEccentricitySq;
+constexpr double kOmega = wgs84::kRotationRateRadps;
+
+/// J2 of the normal field from the defining parameters, without the cancellation of the closed
+/// form. Heiskanen and Moritz (2-58), (2-90) with q0 as its series in the second eccentricity.
+constexpr double normal_j2() {
+  const double ep2 = kE2 / (1.0 - kE2);
+  const double a = wgs84::kSemiMajorAxisM;
+  const double m = kOmega * kOmega * a * a * wgs84::kSemiMinorAxisM / wgs84::kGmM3PerS2;
+  double q0_over_ep3 = 0.0;
+  double power = 1.0;
+  for (int n = 1; n <= 12; ++n) {
+    q0_over_ep3 += 2.0 * n / ((2.0 * n + 1.0) * (2.0 * n + 3.0)) * power;
+    power *= -ep2;
+  }
+  return kE2 / 3.0 * (1.0 - 2.0 / 15.0 * m / (ep2 * q0_over_ep3));
+}
+
+/// J_{2n} of the normal field. Heiskanen and Moritz (2-92).
+constexpr double normal_j(int n) {
+  const double j2 = normal_j2();
+  double e_power = 1.0;
+  for (int i = 0; i < n; ++i) e_power *= kE2;
+  const double sign = n % 2 == 1 ? 1.0 : -1.0;
+  return sign * 3.0 * e_power / ((2.0 * n + 1.0) * (2.0 * n + 3.0)) *
+         (1.0 - n + 5.0 * n * j2 / kE2);
+}
+
+constexpr std::size_t kMaxPower = 16;
+using Polynomial = std::array<double, kMaxPower>;  // coefficient of s^i
+
+constexpr Polynomial legendre(int degree) {
+  Polynomial previous{1.0};
+  Polynomial current{0.0, 1.0};
+  if (degree == 0) return previous;
+  for (int n = 1; n < degree; ++n) {
+    Polynomial next{};
+    for (std::size_t i = 0; i < kMaxPower; ++i) {
+      next[i] = -n * previous[i] / (n + 1.0);
+      if (i > 0) next[i] += (2.0 * n + 1.0) * current[i - 1] / (n + 1.0);
+    }
+    previous = current;
+    current = next;
+  }
+  return current;
+}
+
+constexpr Polynomial derivative(const Polynomial& p) {
+  Polynomial d{};
+  for (std::size_t i = 1; i < kMaxPower; ++i) d[i - 1] = static_cast<double>(i) * p[i];
+  return d;
+}
+
+/// Sum over even degrees of c_n (a/r)^n p_n(s), all p_n even in s (or odd, after division by s), as
+/// coefficients of (a/r)^2 and s^2.
+template <int degree>
+struct ZonalSum {
+  static constexpr std::size_t kTerms = degree / 2 + 1;
+  std::array<std::array<double, kTerms + 1>, kTerms> c{};
+
+  constexpr void set(std::size_t term, double factor, const Polynomial& p, std::size_t parity) {
+    for (std::size_t i = 0; i <= kTerms && 2 * i + parity < kMaxPower; ++i) {
+      c[term][i] = factor * p[2 * i + parity];
+    }
+  }
+
+  double operator()(double a_over_r_sq, double s_sq) const {
+    double sum = 0.0;
+    for (std::size_t term = kTerms; term-- > 0;) {
+      double p = 0.0;
+      for (std::size_t i = term + 2; i-- > 0;) p = p * s_sq + c[term][i];
+      sum = sum * a_over_r_sq + p;
+    }
+    return sum;
+  }
+};
+
+constexpr double zonal_factor(int n) { return n == 0 ? 1.0 : -normal_j(n); }
+
+// With V_n = P_n(s) / r^(n+1), s = z / r: dV_n/dz = -(n+1) P_{n+1} / r^(n+2) and
+// dV_n/dx = -x P'_{n+1} / r^(n+3). Differentiating once more gives the gradient.
+template <int degree>
+constexpr ZonalSum<degree> equatorial_sum() {
+  ZonalSum<degree> sum;
+  for (int n = 0; 2 * n <= degree; ++n) {
+    sum.set(static_cast<std::size_t>(n), zonal_factor(n), derivative(legendre(2 * n + 1)), 0);
+  }
+  return sum;
+}
+
+template <int degree>
+constexpr ZonalSum<degree> axial_sum() {
+  ZonalSum<degree> sum;
+  for (int n = 0; 2 * n <= degree; ++n) {
+    sum.set(static_cast<std::size_t>(n), zonal_factor(n) * (2 * n + 1), legendre(2 * n + 1), 1);
+  }
+  return sum;
+}
+
+template <int degree>
+constexpr ZonalSum<degree> axial_axial_sum() {
+  ZonalSum<degree> sum;
+  for (int n = 0; 2 * n <= degree; ++n) {
+    sum.set(static_cast<std::size_t>(n), zonal_factor(n) * (2 * n + 1) * (2 * n + 2),
+            legendre(2 * n + 2), 0);
+  }
+  return sum;
+}
+
+template <int degree>
+constexpr ZonalSum<degree> axial_equatorial_sum() {
+  ZonalSum<degree> sum;
+  for (int n = 0; 2 * n <= degree; ++n) {
+    sum.set(static_cast<std::size_t>(n), zonal_factor(n) * (2 * n + 1),
+            derivative(legendre(2 * n + 2)), 1);
+  }
+  return sum;
+}
+
+template <int degree>
+constexpr ZonalSum<degree> equatorial_equatorial_sum() {
+  ZonalSum<degree> sum;
+  for (int n = 0; 2 * n <= degree; ++n) {
+    sum.set(static_cast<std::size_t>(n), zonal_factor(n),
+            derivative(derivative(legendre(2 * n + 2))), 0);
+  }
+  return sum;
+}
+
+Eigen::Vector3d centrifugal_e(const Eigen::Vector3d& r_e_m) {
+  return {kOmega * kOmega * r_e_m.x(), kOmega * kOmega * r_e_m.y(), 0.0};
+}
+
+template <int degree>
+Eigen::Vector3d zonal_gravity_e(const Eigen::Vector3d& r_e_m) {
+  static constexpr auto kEquatorial = equatorial_sum<degree>();
+  static constexpr auto kAxial = axial_sum<degree>();
+  const double inv_r_sq = 1.0 / r_e_m.squaredNorm();
+  const double q = wgs84::kSemiMajorAxisM * wgs84::kSemiMajorAxisM * inv_r_sq;
+  const double s_sq = r_e_m.z() * r_e_m.z() * inv_r_sq;
+  const double gm_over_r3 = wgs84::kGmM3PerS2 * inv_r_sq * std::sqrt(inv_r_sq);
+  const double equatorial = -gm_over_r3 * kEquatorial(q, s_sq);
+  const double axial = -gm_over_r3 * kAxial(q, s_sq);
+  return Eigen::Vector3d(equatorial * r_e_m.x(), equatorial * r_e_m.y(), axial * r_e_m.z()) +
+         centrifugal_e(r_e_m);
+}
+
+}  // namespace
+
+Eigen::Vector3d ecef_from_geodetic(const Geodetic& position) {
+  Eigen::Vector3d r_e_m;
+  GeographicLib::Geocentric::WGS84().Forward(position.lat_rad / kRadPerDeg,
+                                             position.lon_rad / kRadPerDeg, position.height_m,
+                                             r_e_m.x(), r_e_m.y(), r_e_m.z());
+  return r_e_m;
+}
+
+Geodetic geodetic_from_ecef(const Eigen::Vector3d& r_e_m) {
+  Geodetic position;
+  GeographicLib::Geocentric::WGS84().Reverse(r_e_m.x(), r_e_m.y(), r_e_m.z(), position.lat_rad,
+                                             position.lon_rad, position.height_m);
+  position.lat_rad *= kRadPerDeg;
+  position.lon_rad *= kRadPerDeg;
+  return position;
+}
+
+Eigen::Matrix3d ned_to_ecef(const Geodetic& position) {
+  const double sin_lat = std::sin(position.lat_rad);
+  const double cos_lat = std::cos(position.lat_rad);
+  const double sin_lon = std::sin(position.lon_rad);
+  const double cos_lon = std::cos(position.lon_rad);
+  Eigen::Matrix3d C_en;
+  C_en << -sin_lat * cos_lon, -sin_lon, -cos_lat * cos_lon,  //
+      -sin_lat * sin_lon, cos_lon, -cos_lat * sin_lon,       //
+      cos_lat, 0.0, -sin_lat;
+  return C_en;
+}
+
+template <>
+Eigen::Vector3d gravity_e<GravityModel::kConstant>(const Eigen::Vector3d& r_e_m) {
+  const Eigen::Vector3d outward(r_e_m.x(), r_e_m.y(), r_e_m.z() / (1.0 - kE2));
+  return -kStandardGravityMps2 * outward.normalized();
+}
+
+template <>
+Eigen::Vector3d gravity_e<GravityModel::kJ2>(const Eigen::Vector3d& r_e_m) {
+  return zonal_gravity_e<2>(r_e_m);
+}
+
+template <>
+Eigen::Vector3d gravity_e<GravityModel::kNormal>(const Eigen::Vector3d& r_e_m) {
+  return zonal_gravity_e<12>(r_e_m);
+}
+
+Eigen::Vector3d gravity_e(GravityModel model, const Eigen::Vector3d& r_e_m) {
+  switch (model) {
+    case GravityModel::kConstant:
+      return gravity_e<GravityModel::kConstant>(r_e_m);
+    case GravityModel::kJ2:
+      return gravity_e<GravityModel::kJ2>(r_e_m);
+    case GravityModel::kNormal:
+      break;
+  }
+  return gravity_e<GravityModel::kNormal>(r_e_m);
+}
+
+Eigen::Matrix3d gravity_gradient_e(const Eigen::Vector3d& r_e_m) {
+  // Degree 6 leaves 5e-10 relative; the gradient itself moves a position by 1e-6 of its error in 1
+  // s.
+  constexpr int kDegree = 6;
+  static constexpr auto kEquatorial = equatorial_sum<kDegree>();
+  static constexpr auto kEquatorialEquatorial = equatorial_equatorial_sum<kDegree>();
+  static constexpr auto kAxialEquatorial = axial_equatorial_sum<kDegree>();
+  static constexpr auto kAxialAxial = axial_axial_sum<kDegree>();
+  const double inv_r_sq = 1.0 / r_e_m.squaredNorm();
+  const double inv_r = std::sqrt(inv_r_sq);
+  const double q = wgs84::kSemiMajorAxisM * wgs84::kSemiMajorAxisM * inv_r_sq;
+  const Eigen::Vector3d u = r_e_m * inv_r;
+  const double s_sq = u.z() * u.z();
+  const double gm_over_r3 = wgs84::kGmM3PerS2 * inv_r_sq * inv_r;
+
+  const double isotropic = -kEquatorial(q, s_sq);
+  const double radial = kEquatorialEquatorial(q, s_sq);
+  const double axial = kAxialEquatorial(q, s_sq) * u.z();
+  Eigen::Matrix3d gradient;
+  gradient(0, 0) = gm_over_r3 * (isotropic + radial * u.x() * u.x()) + kOmega * kOmega;
+  gradient(1, 1) = gm_over_r3 * (isotropic + radial * u.y() * u.y()) + kOmega * kOmega;
+  gradient(2, 2) = gm_over_r3 * kAxialAxial(q, s_sq);
+  gradient(0, 1) = gradient(1, 0) = gm_over_r3 * radial * u.x() * u.y();
+  gradient(0, 2) = gradient(2, 0) = gm_over_r3 * axial * u.x();
+  gradient(1, 2) = gradient(2, 1) = gm_over_r3 * axial * u.y();
+  return gradient;
+}
+
+}  // namespace leeway

@@ -1,0 +1,316 @@
+#include "leeway/strapdown.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "leeway/rotation.hpp"
+
+namespace leeway {
+namespace {
+
+template <EarthRotation rotation>
+Eigen::Vector3d earth_turn_rate_e() {
+  return rotation == EarthRotation::kOn ? earth_rotation_e_radps() : Eigen::Vector3d::Zero();
+}
+
+/// What two increments tell beyond one: coning and sculling in the body axes of the newer one's
+/// start, with rates linear through both, of whatever lengths. For equal lengths the factor is the
+/// classical 1/12. Savage (1998), part 1 (47), part 2 (36).
+struct PairTerms {
+  Eigen::Vector3d coning_b_rad{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d sculling_b_mps{Eigen::Vector3d::Zero()};
+};
+
+PairTerms pair_terms(const ImuIncrement& inc, const ImuIncrement& last) {
+  const double factor = inc.dt_s * inc.dt_s / (6.0 * last.dt_s * (last.dt_s + inc.dt_s));
+  return {factor * last.dtheta_b_rad.cross(inc.dtheta_b_rad),
+          factor * (last.dtheta_b_rad.cross(inc.dv_b_mps) + last.dv_b_mps.cross(inc.dtheta_b_rad))};
+}
+
+/// Position change beyond the trapezoid when the acceleration is linear through two increments.
+Eigen::Vector3d curvature_e_m(const Eigen::Vector3d& dv_e_mps, double dt_s,
+                              const Eigen::Vector3d& last_dv_e_mps, double last_dt_s) {
+  return -dt_s * dt_s * dt_s / (6.0 * (dt_s + last_dt_s)) *
+         (dv_e_mps / dt_s - last_dv_e_mps / last_dt_s);
+}
+
+/// [seed (3)-(8)]; the semi-implicit variant takes the position from the new velocity.
+template <GravityModel gravity, EarthRotation rotation, bool position_from_new_velocity>
+StrapdownStep euler_step(NavState& state, const ImuIncrement& inc) {
+  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
+  const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
+  const Eigen::Vector3d dtheta_eb_b =
+      inc.dtheta_b_rad - inc.dt_s * (C_eb.transpose() * omega_ie_e);  // [seed (3)]
+  const Eigen::Vector3d dv_f_e = C_eb * inc.dv_b_mps;                 // [seed (4)]
+  const Eigen::Vector3d v_old_e = state.v_e_mps;
+  state.v_e_mps += dv_f_e + inc.dt_s * (gravity_e<gravity>(state.r_e_m) -
+                                        2.0 * omega_ie_e.cross(v_old_e));  // [seed (5)-(7)]
+  state.r_e_m += inc.dt_s * (position_from_new_velocity ? state.v_e_mps : v_old_e);  // [seed (8)]
+  state.q_eb = turned(Eigen::Vector3d::Zero(), state.q_eb, dtheta_eb_b);
+  return {C_eb, dv_f_e};
+}
+
+/// Second order in everything but the body-frame integrals, which the caller supplies in dv_f_e.
+template <GravityModel gravity, EarthRotation rotation>
+Eigen::Vector3d velocity_change(const NavState& state, const Eigen::Vector3d& dv_f_e, double dt_s) {
+  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
+  const Eigen::Vector3d g_e = gravity_e<gravity>(state.r_e_m + 0.5 * dt_s * state.v_e_mps);
+  const Eigen::Vector3d coriolis_e = -2.0 * omega_ie_e.cross(state.v_e_mps);
+  const Eigen::Vector3d v_mid_e = state.v_e_mps + 0.5 * (dv_f_e + dt_s * (g_e + coriolis_e));
+  return dv_f_e + dt_s * (g_e - 2.0 * omega_ie_e.cross(v_mid_e));
+}
+
+template <GravityModel gravity, EarthRotation rotation>
+StrapdownStep trapezoid_step(NavState& state, const ImuIncrement& inc) {
+  const Eigen::Matrix3d C_old = state.q_eb.toRotationMatrix();
+  state.q_eb = turned(-inc.dt_s * earth_turn_rate_e<rotation>(), state.q_eb, inc.dtheta_b_rad);
+  const Eigen::Matrix3d C_mean = 0.5 * (C_old + state.q_eb.toRotationMatrix());
+  const Eigen::Vector3d dv_f_e = C_mean * inc.dv_b_mps;
+  const Eigen::Vector3d dv_e = velocity_change<gravity, rotation>(state, dv_f_e, inc.dt_s);
+  state.r_e_m += inc.dt_s * (state.v_e_mps + 0.5 * dv_e);
+  state.v_e_mps += dv_e;
+  return {C_mean, dv_f_e};
+}
+
+/// Exact for a rate and force constant within the increment, plus the terms of a pair.
+template <GravityModel gravity, EarthRotation rotation>
+StrapdownStep increment_step(NavState& state, const ImuIncrement& inc, const PairTerms& terms) {
+  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
+  const Eigen::Vector3d phi_b = inc.dtheta_b_rad + terms.coning_b_rad;
+  const Eigen::Vector3d dv_b =
+      left_jacobian_times(inc.dtheta_b_rad, inc.dv_b_mps) + terms.sculling_b_mps;
+
+  const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
+  Eigen::Vector3d dv_f_e = C_eb * dv_b;
+  dv_f_e -= 0.5 * inc.dt_s * omega_ie_e.cross(dv_f_e);  // the frame turns under the force
+  const Eigen::Vector3d dv_e = velocity_change<gravity, rotation>(state, dv_f_e, inc.dt_s);
+  state.r_e_m += inc.dt_s * (state.v_e_mps + 0.5 * dv_e);
+  state.v_e_mps += dv_e;
+  state.q_eb = turned(-inc.dt_s * omega_ie_e, state.q_eb, phi_b);
+  return {C_eb + 0.5 * C_eb * skew(phi_b), dv_f_e};
+}
+
+/// Each step looks back, so that every output is good; the second step of a pair also replaces what
+/// the first took from the past by what the pair itself shows. That makes the pair symmetric in
+/// time, and the scheme one order better than looking back alone.
+template <GravityModel gravity, EarthRotation rotation>
+StrapdownStep two_sample_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
+  const ImuIncrement last = history.recent[0];
+  const bool look_back = history.count > 0;
+  const bool settle = history.pair_open;
+  const double length_ratio = settle ? last.dt_s / inc.dt_s : 0.0;
+  const double share = length_ratio * length_ratio * length_ratio;
+  const PairTerms own = look_back ? pair_terms(inc, last) : PairTerms{};
+  PairTerms applied = own;
+  if (settle) {
+    // Owed to the first step, carried over the turn since.
+    const Eigen::Vector3d coning = share * own.coning_b_rad - history.coning_b_rad;
+    const Eigen::Vector3d sculling = share * own.sculling_b_mps - history.sculling_b_mps;
+    applied.coning_b_rad += coning - 0.5 * (last.dtheta_b_rad + inc.dtheta_b_rad).cross(coning);
+    applied.sculling_b_mps += sculling - last.dtheta_b_rad.cross(sculling);
+  }
+  const Eigen::Vector3d v_old_e = state.v_e_mps;
+  const StrapdownStep step = increment_step<gravity, rotation>(state, inc, applied);
+
+  const Eigen::Vector3d dv_e = state.v_e_mps - v_old_e;
+  // Needs no settling: over equal steps these telescope to the change of the acceleration.
+  if (look_back) state.r_e_m += curvature_e_m(dv_e, inc.dt_s, history.dv_e_mps, last.dt_s);
+
+  history.recent[0] = inc;
+  history.count = 1;
+  history.pair_open = !settle;
+  history.coning_b_rad = own.coning_b_rad;
+  history.sculling_b_mps = own.sculling_b_mps;
+  history.dv_e_mps = dv_e;
+  return step;
+}
+
+/// Body rates at the start, middle and end of an increment.
+struct BodyRates {
+  std::array<Eigen::Vector3d, 3> omega_b;
+  std::array<Eigen::Vector3d, 3> f_b;
+};
+
+/// Rates within recent[which] as the derivative of the polynomial through the running integrals at
+/// the ends of all recent increments; their integral over each increment is kept.
+BodyRates fitted_rates(const ImuHistory& history, std::size_t which) {
+  constexpr std::size_t kMaxKnots = ImuHistory::kLength + 1;
+  const std::size_t knots = static_cast<std::size_t>(history.count) + 1;
+  std::array<double, kMaxKnots> t{};
+  std::array<Eigen::Vector3d, kMaxKnots> theta;
+  std::array<Eigen::Vector3d, kMaxKnots> v;
+  theta[0] = v[0] = Eigen::Vector3d::Zero();
+  for (std::size_t k = 1; k < knots; ++k) {
+    t[k] = t[k - 1] - history.recent[k - 1].dt_s;
+    theta[k] = theta[k - 1] - history.recent[k - 1].dtheta_b_rad;
+    v[k] = v[k - 1] - history.recent[k - 1].dv_b_mps;
+  }
+  // Derivative at s of the Lagrange polynomial of knot j.
+  const auto slope = [&](std::size_t j, double s) {
+    double sum = 0.0;
+    for (std::size_t skipped = 0; skipped < knots; ++skipped) {
+      if (skipped == j) continue;
+      double product = 1.0 / (t[j] - t[skipped]);
+      for (std::size_t m = 0; m < knots; ++m) {
+        if (m != j && m != skipped) product *= (s - t[m]) / (t[j] - t[m]);
+      }
+      sum += product;
+    }
+    return sum;
+  };
+  BodyRates rates;
+  for (std::size_t i = 0; i < 3; ++i) {
+    rates.omega_b[i] = rates.f_b[i] = Eigen::Vector3d::Zero();
+    const double s = t[which + 1] + 0.5 * static_cast<double>(i) * history.recent[which].dt_s;
+    for (std::size_t j = 0; j < knots; ++j) {
+      const double weight = slope(j, s);
+      rates.omega_b[i] += weight * theta[j];
+      rates.f_b[i] += weight * v[j];
+    }
+  }
+  return rates;
+}
+
+struct StateRate {
+  Eigen::Vector4d q;
+  Eigen::Vector3d v_e;
+  Eigen::Vector3d r_e;
+};
+
+/// The equations of motion: [seed (3)-(5)] as differential equations.
+template <GravityModel gravity, EarthRotation rotation>
+StateRate state_rate(const NavState& state, const Eigen::Vector3d& omega_b,
+                     const Eigen::Vector3d& f_b) {
+  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
+  const Eigen::Quaterniond omega_b_q(0.0, omega_b.x(), omega_b.y(), omega_b.z());
+  const Eigen::Quaterniond omega_e_q(0.0, omega_ie_e.x(), omega_ie_e.y(), omega_ie_e.z());
+  StateRate rate;
+  rate.q = 0.5 * ((state.q_eb * omega_b_q).coeffs() - (omega_e_q * state.q_eb).coeffs());
+  rate.v_e = state.q_eb.normalized() * f_b - 2.0 * omega_ie_e.cross(state.v_e_mps) +
+             gravity_e<gravity>(state.r_e_m);
+  rate.r_e = state.v_e_mps;
+  return rate;
+}
+
+NavState moved(const NavState& state, const StateRate& rate, double dt_s) {
+  NavState next = state;
+  next.q_eb.coeffs() += dt_s * rate.q;
+  next.v_e_mps += dt_s * rate.v_e;
+  next.r_e_m += dt_s * rate.r_e;
+  return next;
+}
+
+/// Classical RK4 over recent[which].
+template <GravityModel gravity, EarthRotation rotation>
+void runge_kutta(NavState& state, const ImuHistory& history, std::size_t which) {
+  const double h = history.recent[which].dt_s;
+  const BodyRates body = fitted_rates(history, which);
+  const auto rate = [&](const NavState& s, std::size_t i) {
+    return state_rate<gravity, rotation>(s, body.omega_b[i], body.f_b[i]);
+  };
+  const StateRate k1 = rate(state, 0);
+  const StateRate k2 = rate(moved(state, k1, 0.5 * h), 1);
+  const StateRate k3 = rate(moved(state, k2, 0.5 * h), 1);
+  const StateRate k4 = rate(moved(state, k3, h), 2);
+  // The norm is restored within the one addition, as in turned().
+  const Eigen::Vector4d turn = h / 6.0 * (k1.q + 2.0 * (k2.q + k3.q) + k4.q);
+  const Eigen::Vector4d turned_q = state.q_eb.coeffs() + turn;
+  state.q_eb.coeffs() += turn + (0.5 - 0.5 * turned_q.squaredNorm()) * turned_q;
+  state.v_e_mps += h / 6.0 * (k1.v_e + 2.0 * (k2.v_e + k3.v_e) + k4.v_e);
+  state.r_e_m += h / 6.0 * (k1.r_e + 2.0 * (k2.r_e + k3.r_e) + k4.r_e);
+}
+
+bool same_motion(const NavState& a, const NavState& b) {
+  return a.q_eb.coeffs() == b.q_eb.coeffs() && a.v_e_mps == b.v_e_mps && a.r_e_m == b.r_e_m;
+}
+
+template <GravityModel gravity, EarthRotation rotation>
+StrapdownStep runge_kutta_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
+  constexpr std::size_t kLength = ImuHistory::kLength;
+  const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
+  std::copy_backward(history.recent, history.recent + kLength - 1, history.recent + kLength);
+  history.recent[0] = inc;
+  if (history.count == 0) history.first = state;
+  // The first increments were fitted with fewer than four: go back and redo them with what has come
+  // since, unless a correction has moved the state in between.
+  const bool redo =
+      history.count > 0 && history.count < ImuHistory::kLength && same_motion(state, history.last);
+  history.count = std::min(history.count + 1, ImuHistory::kLength);
+  if (redo) {
+    state = history.first;
+    for (auto which = static_cast<std::size_t>(history.count); which-- > 1;) {
+      runge_kutta<gravity, rotation>(state, history, which);
+    }
+  }
+  runge_kutta<gravity, rotation>(state, history, 0);
+  history.last = state;
+  const Eigen::Matrix3d C_eb_mean = 0.5 * (C_eb + state.q_eb.toRotationMatrix());
+  return {C_eb_mean, C_eb_mean * inc.dv_b_mps};
+}
+
+}  // namespace
+
+template <Scheme scheme, GravityModel gravity, EarthRotation rotation>
+StrapdownStep strapdown_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
+  if (history.count > 0 && history.recent[0].time != state.time) history = ImuHistory{};
+  StrapdownStep step;
+  if constexpr (scheme == Scheme::kExplicitEuler) {
+    step = euler_step<gravity, rotation, false>(state, inc);
+  } else if constexpr (scheme == Scheme::kSemiImplicitEuler) {
+    step = euler_step<gravity, rotation, true>(state, inc);
+  } else if constexpr (scheme == Scheme::kTrapezoid) {
+    step = trapezoid_step<gravity, rotation>(state, inc);
+  } else if constexpr (scheme == Scheme::kOneSample) {
+    step = increment_step<gravity, rotation>(state, inc, PairTerms{});
+  } else if constexpr (scheme == Scheme::kTwoSample) {
+    step = two_sample_step<gravity, rotation>(state, inc, history);
+  } else {
+    step = runge_kutta_step<gravity, rotation>(state, inc, history);
+  }
+  state.time = inc.time;
+  return step;
+}
+
+namespace {
+
+template <Scheme scheme, GravityModel gravity>
+StrapdownFunction with_rotation(EarthRotation rotation) {
+  return rotation == EarthRotation::kOn ? &strapdown_step<scheme, gravity, EarthRotation::kOn>
+                                        : &strapdown_step<scheme, gravity, EarthRotation::kOff>;
+}
+
+template <Scheme scheme>
+StrapdownFunction with_gravity(const StrapdownPolicy& policy) {
+  switch (policy.gravity) {
+    case GravityModel::kConstant:
+      return with_rotation<scheme, GravityModel::kConstant>(policy.rotation);
+    case GravityModel::kJ2:
+      return with_rotation<scheme, GravityModel::kJ2>(policy.rotation);
+    case GravityModel::kNormal:
+      break;
+  }
+  return with_rotation<scheme, GravityModel::kNormal>(policy.rotation);
+}
+
+}  // namespace
+
+StrapdownFunction strapdown_function(const StrapdownPolicy& policy) {
+  switch (policy.scheme) {
+    case Scheme::kExplicitEuler:
+      return with_gravity<Scheme::kExplicitEuler>(policy);
+    case Scheme::kSemiImplicitEuler:
+      return with_gravity<Scheme::kSemiImplicitEuler>(policy);
+    case Scheme::kTrapezoid:
+      return with_gravity<Scheme::kTrapezoid>(policy);
+    case Scheme::kOneSample:
+      return with_gravity<Scheme::kOneSample>(policy);
+    case Scheme::kRungeKutta4:
+      return with_gravity<Scheme::kRungeKutta4>(policy);
+    case Scheme::kTwoSample:
+      break;
+  }
+  return with_gravity<Scheme::kTwoSample>(policy);
+}
+
+}  // namespace leeway
