@@ -1,0 +1,226 @@
+#include "leeway/filters/ekf.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "leeway/error.hpp"
+#include "leeway/filters/chi_square.hpp"
+#include "leeway/filters/gnss_measurement.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kCoastTurnRadps = 0.5;
+constexpr double kCoastAccelerationMps2 = 3.0;
+
+void validate(const EkfConfig& config) {
+  if (!config.lever_arm_b_m.allFinite() || config.lever_arm_b_m.norm() > 1000.0) {
+    throw Error("lever_arm_b_m: must be finite and at most 1000 m long");
+  }
+  if (!(config.gate_probability == 0.0 ||
+        (config.gate_probability >= 1e-100 && config.gate_probability < 1.0))) {
+    throw Error("gate_probability is " + std::to_string(config.gate_probability) +
+                ", must be 0 (no gate) or 1e-100 to 1");
+  }
+  if (!(config.gnss_correlation_s >= 0.0 && config.gnss_correlation_s <= 1e6)) {
+    throw Error("gnss_correlation_s is " + std::to_string(config.gnss_correlation_s) +
+                ", must be 0 (white) to 1e6 s");
+  }
+  if (!(config.covariance_interval_s >= 0.0 && config.covariance_interval_s <= 10.0)) {
+    throw Error("covariance_interval_s is " + std::to_string(config.covariance_interval_s) +
+                ", must be 0 to 10 s");
+  }
+}
+
+void validate(const Estimate& estimate, const ErrorMatrix& P) {
+  const NavState& nav = estimate.nav;
+  if (!nav.v_e_mps.allFinite() || !nav.r_e_m.allFinite() || !nav.q_eb.coeffs().allFinite()) {
+    throw Error("initial navigation state: every element must be finite");
+  }
+  if (std::abs(nav.q_eb.norm() - 1.0) > 1e-9) {
+    throw Error("initial q_eb has norm " + std::to_string(nav.q_eb.norm()) +
+                ", must be 1 within 1e-9: call normalize()");
+  }
+  if (!(nav.r_e_m.norm() > 6.3e6)) {
+    throw Error("initial r_e_m is " + std::to_string(nav.r_e_m.norm()) +
+                " m from the Earth's centre, must be above 6.3e6 m: ECEF coordinates are wanted");
+  }
+  if (!P.allFinite() || P.diagonal().minCoeff() < 0.0 ||
+      (P - P.transpose()).cwiseAbs().maxCoeff() > 1e-9 * P.cwiseAbs().maxCoeff()) {
+    throw Error("initial covariance: must be finite, symmetric, with no negative diagonal element");
+  }
+}
+
+}  // namespace
+
+Ekf::Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P)
+    : config_(config),
+      noise_(process_noise(config.imu)),
+      strapdown_step_(strapdown_function(config.strapdown)),
+      estimate_(estimate),
+      P_(P) {
+  validate(config);
+  validate(estimate, P);
+  for (const int dof : {3, 6}) {
+    gate_[dof] = config.gate_probability > 0.0 ? chi_square_threshold(config.gate_probability, dof)
+                                               : std::numeric_limits<double>::infinity();
+  }
+}
+
+void Ekf::predict(const ImuIncrement& inc) {
+  ImuIncrement corrected = inc;
+  corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
+  corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
+  omega_ib_b_radps_ = inc.dtheta_b_rad / inc.dt_s;
+
+  ErrorDynamics dynamics;
+  dynamics.dt_s = inc.dt_s;
+  dynamics.gravity_gradient_e = gravity_gradient_e(estimate_.nav.r_e_m);
+  dynamics.tau_a_s = noise_.tau_a_s;
+  dynamics.tau_g_s = noise_.tau_g_s;
+  const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
+  dynamics.C_eb_mean = step.C_eb_mean;
+  dynamics.dv_f_e_mps = step.dv_f_e_mps;
+
+  const double a_a = Phi_.a_a;
+  const double g_g = Phi_.g_g;
+  advance(Phi_, dynamics);
+  estimate_.bias.b_a_mps2 *= Phi_.a_a / a_a;
+  estimate_.bias.b_g_radps *= Phi_.g_g / g_g;
+  // Half an increment of slack, so that rounding does not shift the moment.
+  if (Phi_.dt_s + 0.5 * inc.dt_s > config_.covariance_interval_s) flush();
+}
+
+void Ekf::coast(Time to) {
+  flush();
+  const double dt_s = to_seconds(to - estimate_.nav.time);
+  estimate_.nav.r_e_m += dt_s * estimate_.nav.v_e_mps;
+  estimate_.nav.time = to;
+  Phi_.dt_s = dt_s;
+  Phi_.r_v = dt_s * Eigen::Matrix3d::Identity();
+  flush();
+  const double turn_rad = kCoastTurnRadps * dt_s;
+  const double velocity_mps = kCoastAccelerationMps2 * dt_s;
+  const double position_m = 0.5 * velocity_mps * dt_s;
+  P_.diagonal().segment<3>(kPsi).array() += turn_rad * turn_rad;
+  P_.diagonal().segment<3>(kDv).array() += velocity_mps * velocity_mps;
+  P_.diagonal().segment<3>(kDr).array() += position_m * position_m;
+  P_.block<3, 3>(kDv, kDr).diagonal().array() += velocity_mps * position_m;
+  P_.block<3, 3>(kDr, kDv).diagonal().array() += velocity_mps * position_m;
+}
+
+UpdateReport Ekf::update(const GnssFix& fix) {
+  UpdateReport report;
+  report.time = fix.time;
+  if (!is_usable(fix)) return report;
+  flush();
+
+  const GnssMeasurement m =
+      gnss_measurement(fix, estimate_, config_.lever_arm_b_m, omega_ib_b_radps_);
+  report.dof = m.rows();
+  report.gate = gate_[report.dof];
+  using Matrix = decltype(m.R);
+  const Matrix S = m.H * P_ * m.H.transpose() + m.R;
+  const Eigen::LLT<Matrix> S_llt(S);
+  report.covariance_positive = S_llt.info() == Eigen::Success;
+  if (!report.covariance_positive) return report;
+  report.nis = m.innovation.dot(S_llt.solve(m.innovation));
+  if (!(report.nis <= report.gate)) {
+    report.outcome = UpdateReport::Outcome::kGated;
+    return report;
+  }
+
+  // Whitened by the Cholesky factor of R, the components are independent, of unit variance.
+  const Eigen::LLT<Matrix> R_llt(m.R);
+  auto white_H = R_llt.matrixL().solve(m.H).eval();
+  auto white_z = R_llt.matrixL().solve(m.innovation).eval();
+  if (fix.position) {
+    const double weight = position_weight(fix.time);
+    white_H.topRows<3>() *= weight;
+    white_z.head<3>() *= weight;
+    last_position_fix_ = fix.time;
+  }
+  ErrorVector x_hat = ErrorVector::Zero();
+  for (int i = 0; i < report.dof; ++i) {
+    scalar_update(P_, x_hat, white_H.row(i).transpose(), white_z(i));
+  }
+
+  inject(estimate_, x_hat);
+  const Eigen::Matrix3d J = reset_jacobian(x_hat);
+  P_.middleRows<3>(kPsi) = (J * P_.middleRows<3>(kPsi)).eval();
+  P_.middleCols<3>(kPsi) = (P_.middleCols<3>(kPsi) * J.transpose()).eval();
+  report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
+  report.outcome = UpdateReport::Outcome::kFused;
+  return report;
+}
+
+double Ekf::position_weight(Time t) const {
+  if (!last_position_fix_ || config_.gnss_correlation_s == 0.0) return 1.0;
+  // (1 - a) / (1 + a) is the tanh; a second fix at the same time repeats the first: weight 0.
+  return std::sqrt(
+      std::tanh(0.5 * to_seconds(t - *last_position_fix_) / config_.gnss_correlation_s));
+}
+
+ErrorMatrix Ekf::covariance() const {
+  ErrorMatrix P = P_;
+  propagate(P, Phi_, noise_);
+  return P;
+}
+
+void Ekf::flush() {
+  if (Phi_.dt_s == 0.0) return;
+  propagate(P_, Phi_, noise_);
+  Phi_ = Transition{};
+}
+
+ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sigma,
+                               const ImuErrorModel& imu) {
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m));
+  const Eigen::Vector3d psi_n(sigma.tilt_rad, sigma.tilt_rad, sigma.heading_rad);
+  const auto variance = [](const TriadErrorModel& triad) {
+    return triad.bias_sigma * triad.bias_sigma + triad.in_run.sigma * triad.in_run.sigma;
+  };
+  ErrorMatrix P = ErrorMatrix::Zero();
+  P.block<3, 3>(kPsi, kPsi) = C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
+  P.diagonal().segment<3>(kDv).setConstant(sigma.velocity_mps * sigma.velocity_mps);
+  P.diagonal().segment<3>(kDr).setConstant(sigma.position_m * sigma.position_m);
+  P.diagonal().segment<3>(kBa).setConstant(variance(imu.accelerometer));
+  P.diagonal().segment<3>(kBg).setConstant(variance(imu.gyro));
+  return P;
+}
+
+Solution solution(const Estimate& estimate, const ErrorMatrix& P) {
+  const NavStateNed ned = ned_from_nav_state(estimate.nav);
+  const Eigen::Matrix3d C_ne = ned_to_ecef(ned.position).transpose();
+  const auto sigma_n = [&](int i) -> Eigen::Vector3d {
+    return (C_ne * P.block<3, 3>(i, i) * C_ne.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
+  };
+  // Small turns about north, east and down as changes of roll, pitch and yaw. Near pitch +-90 deg
+  // roll and yaw lose their meaning; the bound keeps their sigmas finite.
+  const auto [roll, pitch, yaw] = ned.attitude;
+  const double cos_pitch = std::max(std::cos(pitch), 1e-3);
+  Eigen::Matrix3d euler_from_psi;
+  euler_from_psi << std::cos(yaw) / cos_pitch, std::sin(yaw) / cos_pitch, 0.0,  //
+      -std::sin(yaw), std::cos(yaw), 0.0,                                       //
+      std::cos(yaw) * std::sin(pitch) / cos_pitch, std::sin(yaw) * std::sin(pitch) / cos_pitch, 1.0;
+  const Eigen::Matrix3d to_euler = euler_from_psi * C_ne;
+
+  Solution s;
+  s.nav = estimate.nav;
+  s.b_a_mps2 = estimate.bias.b_a_mps2;
+  s.b_g_radps = estimate.bias.b_g_radps;
+  s.sigma_position_n_m = sigma_n(kDr);
+  s.sigma_velocity_n_mps = sigma_n(kDv);
+  s.sigma_attitude_rad = (to_euler * P.block<3, 3>(kPsi, kPsi) * to_euler.transpose())
+                             .diagonal()
+                             .cwiseMax(0.0)
+                             .cwiseSqrt();
+  s.sigma_b_a_mps2 = P.diagonal().segment<3>(kBa).cwiseMax(0.0).cwiseSqrt();
+  s.sigma_b_g_radps = P.diagonal().segment<3>(kBg).cwiseMax(0.0).cwiseSqrt();
+  return s;
+}
+
+}  // namespace leeway

@@ -1,0 +1,107 @@
+/// @file
+/// The 15-state error-state extended Kalman filter around the strapdown.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "leeway/filters/covariance.hpp"
+#include "leeway/filters/error_state.hpp"
+#include "leeway/filters/transition.hpp"
+#include "leeway/gnss_fix.hpp"
+#include "leeway/imu.hpp"
+#include "leeway/imu_class.hpp"
+#include "leeway/imu_error_model.hpp"
+#include "leeway/solution.hpp"
+#include "leeway/strapdown.hpp"
+
+namespace leeway {
+
+/// The defaults suit a car.
+struct EkfConfig {
+  ImuErrorModel imu{automotive_mems_model()};
+  StrapdownPolicy strapdown{};
+  Eigen::Vector3d lever_arm_b_m{Eigen::Vector3d::Zero()};  ///< IMU to GNSS antenna, body axes
+  /// Correlation time of the GNSS position error. Fixes closer together than this repeat much of
+  /// the same error: each is fused with R (1 + a) / (1 - a), a = exp(-dt / time), the white noise
+  /// whose mean wanders as much. 0: the error is white.
+  double gnss_correlation_s{30.0};
+  /// A fix is refused when a right one would look as bad with less than this probability. 0: no
+  /// gate.
+  double gate_probability{1e-6};
+  /// P is propagated when this much time has accumulated in Phi, and before every update. 0: at
+  /// every increment.
+  double covariance_interval_s{0.1};
+};
+
+/// 1-sigma of the initial error, isotropic per group except attitude.
+struct InitialSigma {
+  double tilt_rad{};
+  double heading_rad{};
+  double velocity_mps{};
+  double position_m{};
+};
+
+/// What became of a fix.
+struct UpdateReport {
+  enum class Outcome { kFused, kGated, kUnusable };
+  Outcome outcome{Outcome::kUnusable};
+  Time time{};
+  int dof{0};                      ///< components of the fix
+  double nis{0.0};                 ///< normalized innovation squared of the whole fix, by its own R
+  double gate{0.0};                ///< the NIS above which it is refused
+  bool covariance_positive{true};  ///< no diagonal element and no innovation variance <= 0
+};
+
+/// Owns the estimate, its covariance and the transition since it was last propagated. predict,
+/// update and coast allocate nothing, throw nothing, log nothing; same inputs give the same bits.
+class Ekf {
+ public:
+  /// @throws Error when the configuration is invalid: the field, its value, the allowed range.
+  Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P);
+
+  /// Advances by one increment. @pre inc.time - inc.dt_s = estimate().nav.time, inc.dt_s > 0.
+  void predict(const ImuIncrement& inc);
+
+  /// Carries the state over a time without IMU data: constant velocity relative to the Earth,
+  /// attitude held in the Earth-fixed frame, and an uncertainty that grows as that of a vehicle
+  /// that may turn at 0.5 rad/s and accelerate at 3 m/s^2 (1 sigma).
+  /// @pre to > estimate().nav.time.
+  void coast(Time to);
+
+  /// Gates the whole fix, then fuses it by sequential scalar updates. @pre fix.time equals
+  /// estimate().nav.time.
+  UpdateReport update(const GnssFix& fix);
+
+  const Estimate& estimate() const { return estimate_; }
+
+  /// Covariance at the estimate's time. Reading it changes nothing.
+  ErrorMatrix covariance() const;
+
+  const EkfConfig& config() const { return config_; }
+
+ private:
+  void flush();
+  double position_weight(Time t) const;
+
+  EkfConfig config_;
+  ProcessNoise noise_;
+  StrapdownFunction strapdown_step_;
+  double gate_[7]{};  // by degrees of freedom
+  Estimate estimate_;
+  ErrorMatrix P_;
+  Transition Phi_{};
+  ImuHistory history_{};
+  std::optional<Time> last_position_fix_{};
+  Eigen::Vector3d omega_ib_b_radps_{Eigen::Vector3d::Zero()};  // of the newest increment
+};
+
+/// P from sigmas: tilt and heading about the axes of north-east-down at the estimate, bias sigmas
+/// from the model (turn-on and in-run together).
+ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sigma,
+                               const ImuErrorModel& imu);
+
+/// The estimate as people read it, with 1-sigma; nis and nis_dof are left unset.
+Solution solution(const Estimate& estimate, const ErrorMatrix& P);
+
+}  // namespace leeway

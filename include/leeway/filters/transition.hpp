@@ -1,0 +1,50 @@
+/// @file
+/// The transition matrix of the error state by its blocks, accumulated at the IMU rate.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "leeway/filters/error_state.hpp"
+#include "leeway/imu_error_model.hpp"
+#include "leeway/strapdown.hpp"
+
+namespace leeway {
+
+/// Phi over an interval. Blocks not named are zero; the bias blocks are scalars times identity.
+/// Rows: what changes; columns: because of what (a, g: the biases).
+struct Transition {
+  double dt_s{0.0};
+  Eigen::Matrix3d psi_psi{Eigen::Matrix3d::Identity()}, psi_g{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d v_psi{Eigen::Matrix3d::Zero()}, v_v{Eigen::Matrix3d::Identity()},
+      v_r{Eigen::Matrix3d::Zero()}, v_a{Eigen::Matrix3d::Zero()}, v_g{Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d r_psi{Eigen::Matrix3d::Zero()}, r_v{Eigen::Matrix3d::Zero()},
+      r_r{Eigen::Matrix3d::Identity()}, r_a{Eigen::Matrix3d::Zero()}, r_g{Eigen::Matrix3d::Zero()};
+  double a_a{1.0}, g_g{1.0};
+};
+
+/// What drives the error over one IMU increment.
+struct ErrorDynamics {
+  double dt_s{};
+  Eigen::Matrix3d C_eb_mean{Eigen::Matrix3d::Identity()};
+  Eigen::Vector3d dv_f_e_mps{Eigen::Vector3d::Zero()};          ///< integral of specific force
+  Eigen::Matrix3d gravity_gradient_e{Eigen::Matrix3d::Zero()};  ///< 1/s^2
+  double tau_a_s{std::numeric_limits<double>::infinity()};      ///< bias correlation times
+  double tau_g_s{std::numeric_limits<double>::infinity()};
+};
+
+/// Extends Phi by one increment: Phi <- Phi(step) Phi. Second order in the step length.
+/// Source: Groves (2013) (14.18)-(14.21), (14.48)-(14.49) with the gradient of the normal field,
+/// signs by error_state.hpp.
+void advance(Transition& Phi, const ErrorDynamics& step);
+
+/// The continuous system matrix, dense. For tests and analysis; advance() does not form it.
+/// @param f_e_mps2  specific force in ECEF
+ErrorMatrix system_matrix(const Eigen::Matrix3d& C_eb, const Eigen::Vector3d& f_e_mps2,
+                          const Eigen::Matrix3d& gravity_gradient_e, double tau_a_s,
+                          double tau_g_s);
+
+/// Phi as a dense matrix.
+ErrorMatrix dense(const Transition& Phi);
+
+}  // namespace leeway
