@@ -1,0 +1,28 @@
+/// @file
+/// IMU error models as TOML files, as a datasheet states them: every key carries its unit.
+#pragma once
+
+#include <filesystem>
+
+#include "leeway/imu_error_model.hpp"
+
+namespace leeway::sim {
+
+/// Reads the sections [accelerometer] and [gyro]; what is absent is zero (range: infinite).
+///   bias              3 numbers: known constant part    accelerometer: mps2 | mg | ug
+///   bias_sigma        turn-on spread                    gyro: deg_per_h | deg_per_s | radps
+///   in_run_sigma      of the drift within a run, together with in_run_tau_s
+///   noise             accelerometer: ug_per_sqrt_hz | mps_per_sqrt_h
+///                     gyro: deg_per_sqrt_h | dps_per_sqrt_hz
+///   scale_ppm         1 or 3 numbers: scale factor error
+///   misalignment_mrad 6 numbers (xy, xz, yx, yz, zx, zy) or 3 x 3 with a zero diagonal
+///   quantum           LSB of the increment              accelerometer: mps, gyro: rad | arcsec
+///   range             saturation                        accelerometer: mps2 | g, gyro: deg_per_s
+///   g_sensitivity_deg_per_h_per_g                       gyro: 1 number (diagonal) or 3 x 3
+/// The key is the name and the unit, as in bias_sigma_mg. g is 9.80665 m/s^2.
+/// @throws Error with path:line:column when the file is unreadable, is no TOML, has an unknown key
+/// (naming the closest), a value of another type or out of its plausible range, or two keys for one
+/// quantity.
+ImuErrorModel read_imu_model(const std::filesystem::path& path);
+
+}  // namespace leeway::sim

@@ -1,0 +1,16 @@
+/// @file
+/// Independent jobs on all processors of one machine.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace leeway::sim {
+
+/// Calls job(0) .. job(count - 1), each once, on as many threads as there are processors. The first
+/// exception of a job is thrown again here, after all threads have stopped.
+/// @param progress  called with the number of finished jobs, from the calling thread
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& job,
+                  const std::function<void(std::size_t)>& progress = {});
+
+}  // namespace leeway::sim

@@ -1,0 +1,39 @@
+#include "leeway/sim/parallel.hpp"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace leeway::sim {
+
+TEST_CASE("every job runs once, whatever their number") {
+  for (const std::size_t count : {0u, 1u, 2u, 3u, 100u}) {
+    CAPTURE(count);
+    std::vector<std::atomic<int>> calls(count);
+    std::size_t last_progress = 0;
+    parallel_for(
+        count, [&](std::size_t k) { ++calls[k]; },
+        [&](std::size_t finished) { last_progress = finished; });
+    for (const auto& n : calls) CHECK(n == 1);
+    CHECK(last_progress <= count);
+  }
+}
+
+TEST_CASE("an exception of a job reaches the caller after all threads have stopped") {
+  std::atomic<int> running{0};
+  CHECK_THROWS_WITH_AS(parallel_for(50,
+                                    [&](std::size_t k) {
+                                      ++running;
+                                      if (k == 7) {
+                                        --running;
+                                        throw std::runtime_error("job 7");
+                                      }
+                                      --running;
+                                    }),
+                       "job 7", std::runtime_error);
+  CHECK(running == 0);
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,211 @@
+#include "leeway/sim/replay.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "leeway/error.hpp"
+#include "leeway/sim/gnss_simulator.hpp"
+#include "leeway/sim/imu_simulator.hpp"
+#include "leeway/sim/trajectories.hpp"
+#include "support/near.hpp"
+#include "support/temp_dir.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kImuRateHz = 50.0;
+
+/// The logs of a drive on the square loop with perfect sensors, or with those of a model.
+ReplayInput record(const test::TempDir& dir, double duration_s, const ImuErrorModel& model = {},
+                   const GnssErrorModel& gnss_model = {}) {
+  SquareLoopParameters parameters;
+  parameters.duration_s = duration_s;
+  const Trajectory trajectory = square_loop(parameters);
+  ImuErrorSimulator sensor(model, Random(1, 0, kImuStream));
+  GnssSimulator receiver(trajectory, gnss_model, Random(1, 0, kGnssStream));
+  ReplayInput input;
+  input.imu = dir / "imu.csv";
+  input.gnss = dir / "gnss.csv";
+  input.truth = dir / "truth.csv";
+  ImuLogWriter imu(input.imu);
+  GnssLogWriter gnss(input.gnss);
+  TruthLogWriter truth(input.truth);
+  for (const ImuIncrement& inc : true_increments(trajectory, kImuRateHz, duration_s)) {
+    imu.write(sensor.measure(inc));
+    const double t_s = to_seconds(inc.time);
+    truth.write({ned_from_nav_state(truth_at(trajectory, t_s).nav), true, true});
+    if (std::abs(t_s - std::round(t_s)) < 1e-6) gnss.write(receiver.fix_at(t_s));
+  }
+  imu.close();
+  gnss.close();
+  truth.close();
+  return input;
+}
+
+NavigatorConfig white_gnss(const ImuErrorModel& imu) {
+  NavigatorConfig config;
+  config.filter.imu = imu;
+  config.filter.gnss_correlation_s = 0.0;
+  return config;
+}
+
+Alignment start_of(const ReplayInput& input, const ImuErrorModel& imu, const InitialSigma& sigma) {
+  TruthLogReader reader(input.truth);
+  Alignment start;
+  start.estimate.nav = nav_state_from_ned(reader.next()->nav);
+  start.P = initial_covariance(start.estimate, sigma, imu);
+  return start;
+}
+
+}  // namespace
+
+TEST_CASE("perfect sensors from a perfect start: an outage costs next to nothing") {
+  const test::TempDir dir;
+  GnssErrorModel receiver;
+  receiver.position_sigma_n_m.setConstant(1e-3);
+  receiver.velocity_sigma_n_mps.setConstant(1e-3);
+  ReplayInput input = record(dir, 200.0, {}, receiver);
+  const ImuErrorModel imu = imu_class_model(ImuClass::kMarine, RangeEnd::kMid);
+  input.start = start_of(input, imu, {1e-6, 1e-6, 1e-3, 1e-3});
+  input.outages = {{100.0, 60.0}, {120.0, 30.0}, {190.0, 60.0}};
+  const ReplayResult r = replay(input, white_gnss(imu));
+
+  REQUIRE(r.outages.size() == 3);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(r.outages[i].against == Against::kReference);
+    // The 1 mm/s of the fixes leave about 0.1 mm/s in the velocity: 6 mm in 60 s. Twenty times that
+    // is still far below what any mistake in time or frame makes at 20 m/s.
+    CHECK(r.outages[i].end_error_h_m < 0.1);
+    CHECK(r.outages[i].max_error_h_m >= r.outages[i].end_error_h_m);
+  }
+  CHECK(r.outages[2].against == Against::kNothing);  // the log ends before the outage does
+  CHECK(r.rms.horizontal_m < 0.01);
+  CHECK(r.rms.attitude_deg < 0.01);
+  CHECK(r.rms.epochs > 1900);
+}
+
+TEST_CASE("each outage is withheld alone, branching from the fully aided state") {
+  const test::TempDir dir;
+  const ImuErrorModel imu = imu_class_model(ImuClass::kTactical, RangeEnd::kMid);
+  ReplayInput input = record(dir, 240.0, imu);
+  input.start = start_of(input, imu, {3e-3, 0.01, 0.05, 2.5});
+  const std::vector<Outage> outages{{100.0, 30.0}, {110.0, 60.0}, {100.0, 60.0}};
+  input.outages = outages;
+  const ReplayResult together = replay(input, white_gnss(imu));
+  for (std::size_t i = 0; i < outages.size(); ++i) {
+    CAPTURE(i);
+    input.outages = {outages[i]};
+    const ReplayResult alone = replay(input, white_gnss(imu));
+    CHECK(alone.outages[0].end_error_h_m == together.outages[i].end_error_h_m);
+    CHECK(alone.rms.horizontal_m == together.rms.horizontal_m);
+  }
+  input.outages = {};
+  CHECK(replay(input, white_gnss(imu)).nis_mean == together.nis_mean);
+}
+
+TEST_CASE("an outage's error equals that of a log in which the fixes are missing") {
+  const test::TempDir dir;
+  const ImuErrorModel imu = imu_class_model(ImuClass::kTactical, RangeEnd::kMid);
+  ReplayInput input = record(dir, 161.0, imu);
+  input.start = start_of(input, imu, {3e-3, 0.01, 0.05, 2.5});
+  input.outages = {{100.0, 60.0}};
+  const double branch_m = replay(input, white_gnss(imu)).outages[0].end_error_h_m;
+
+  GnssLogReader all(input.gnss);
+  GnssLogWriter cut(dir / "cut.csv");
+  while (const auto fix = all.next()) {
+    if (to_seconds(fix->time) <= 100.0) cut.write(*fix);
+  }
+  cut.close();
+  input.gnss = dir / "cut.csv";
+  input.outages = {};
+  input.solution = dir / "solution.csv";
+  input.solution_rate_hz = kImuRateHz;
+  replay(input, white_gnss(imu));
+  // The solution's file is read back as a truth log, by its columns.
+  TruthTrack solution{TruthLogReader(input.solution)};
+  TruthTrack truth{TruthLogReader(input.truth)};
+  const Time end = time_from_seconds(160.0);
+  const Eigen::Vector3d a = ecef_from_geodetic(solution.interpolate(end)->nav.position);
+  const NavStateNed b = truth.interpolate(end)->nav;
+  const Eigen::Vector3d d_n =
+      ned_to_ecef(b.position).transpose() * (a - ecef_from_geodetic(b.position));
+  // The file rounds latitude and longitude to 11 um; the cut log rounds its fixes to 1e-8 m.
+  CHECK(test::near(d_n.head<2>().norm(), branch_m, 1e-4));
+}
+
+TEST_CASE("without truth the withheld fixes are the measure") {
+  const test::TempDir dir;
+  const ImuErrorModel imu = imu_class_model(ImuClass::kTactical, RangeEnd::kMid);
+  ReplayInput input = record(dir, 200.0, imu);
+  input.start = start_of(input, imu, {3e-3, 0.01, 0.05, 2.5});
+  input.truth.clear();
+  input.outages = {{100.0, 30.0}};
+  const ReplayResult r = replay(input, white_gnss(imu));
+  CHECK(r.outages[0].against == Against::kGnss);
+  CHECK(r.outages[0].end_error_h_m > 0.0);
+  // 30 s of tactical drift beside 2.5 m per axis of the fix: the reference's T = 30 s gives 4.15 m
+  // DRMS settled; ten times that would be a mistake.
+  CHECK(r.outages[0].end_error_h_m < 40.0);
+  CHECK(r.rms.epochs == 0);
+}
+
+TEST_CASE("the window limits what truth is used") {
+  const test::TempDir dir;
+  const ImuErrorModel imu = imu_class_model(ImuClass::kTactical, RangeEnd::kMid);
+  ReplayInput input = record(dir, 100.0, imu);
+  input.start = start_of(input, imu, {3e-3, 0.01, 0.05, 2.5});
+  input.truth_from_s = 50.0;
+  input.truth_to_s = 60.0;
+  input.outages = {{20.0, 10.0}, {45.0, 10.0}};
+  const ReplayResult r = replay(input, white_gnss(imu));
+  CHECK(r.rms.epochs == 101);
+  CHECK(r.outages[0].against == Against::kNothing);
+  CHECK(r.outages[1].against == Against::kReference);
+}
+
+TEST_CASE("a summary pools by duration") {
+  OutageResult a;
+  a.outage = {0.0, 10.0};
+  a.against = Against::kReference;
+  a.end_error_h_m = 3.0;
+  a.end_error_v_m = 1.0;
+  a.end_sigma_h_m = 1.0;
+  OutageResult b = a;
+  b.end_error_h_m = 4.0;
+  OutageResult c = a;
+  c.outage.duration_s = 5.0;
+  c.against = Against::kNothing;
+  const auto s = summarize({a, c, b});
+  REQUIRE(s.size() == 2);
+  CHECK(s[0].duration_s == 5.0);
+  CHECK(s[0].count == 0);
+  CHECK(s[0].unscored == 1);
+  CHECK(s[1].count == 2);
+  CHECK(test::near(s[1].rms_end_h_m, std::sqrt(12.5), 1e-12));
+  CHECK(test::near(s[1].rms_over_sigma_h, std::sqrt(12.5), 1e-12));
+  CHECK(s[1].max_end_h_m == 4.0);
+}
+
+TEST_CASE("an outage file tells what is wrong with it") {
+  const test::TempDir dir;
+  CHECK(read_outages(dir.file("ok.json", R"([{"start_s": 60.5, "duration_s": 10}])")).size() == 1);
+  struct Case {
+    const char* content;
+    const char* told;
+  };
+  for (const Case& c :
+       {Case{"[{\"start_s\": 1}]", "duration_s"},
+        Case{"[{\"start_s\": 1, \"duration_s\": -2}]", "between 0 and"},
+        Case{"[{\"start_s\": \"x\", \"duration_s\": 2}]", "outage 1"}, Case{"{", "wanted"}}) {
+    CAPTURE(c.content);
+    const auto path = dir.file("bad.json", c.content);
+    CHECK_THROWS_WITH_AS(read_outages(path), doctest::Contains(c.told), Error);
+  }
+  CHECK_THROWS_WITH_AS(read_outages(dir / "missing.json"), doctest::Contains("missing.json"),
+                       Error);
+}
+
+}  // namespace leeway::sim
