@@ -14,6 +14,8 @@ namespace leeway {
 namespace {
 
 constexpr double kCoastTurnRadps = 0.5;
+constexpr double kCoastMaxTurnRad = 1.0;  // beyond, the linearized filter does not find back
+constexpr double kCoastTiltRad = 0.1;     // roads lean; they do not turn vehicles over
 constexpr double kCoastAccelerationMps2 = 3.0;
 
 void validate(const EkfConfig& config) {
@@ -64,9 +66,10 @@ Ekf::Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P
       P_(P) {
   validate(config);
   validate(estimate, P);
-  for (const int dof : {3, 6}) {
-    gate_[dof] = config.gate_probability > 0.0 ? chi_square_threshold(config.gate_probability, dof)
-                                               : std::numeric_limits<double>::infinity();
+  for (const std::size_t dof : {3U, 6U}) {
+    gate_[dof] = config.gate_probability > 0.0
+                     ? chi_square_threshold(config.gate_probability, static_cast<int>(dof))
+                     : std::numeric_limits<double>::infinity();
   }
 }
 
@@ -102,10 +105,13 @@ void Ekf::coast(Time to) {
   Phi_.dt_s = dt_s;
   Phi_.r_v = dt_s * Eigen::Matrix3d::Identity();
   flush();
-  const double turn_rad = kCoastTurnRadps * dt_s;
+  const double turn_rad = std::min(kCoastTurnRadps * dt_s, kCoastMaxTurnRad);
+  const double tilt_rad = std::min(turn_rad, kCoastTiltRad);
   const double velocity_mps = kCoastAccelerationMps2 * dt_s;
   const double position_m = 0.5 * velocity_mps * dt_s;
-  P_.diagonal().segment<3>(kPsi).array() += turn_rad * turn_rad;
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(estimate_.nav.r_e_m));
+  const Eigen::Vector3d psi_n(tilt_rad, tilt_rad, turn_rad);
+  P_.block<3, 3>(kPsi, kPsi) += C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
   P_.diagonal().segment<3>(kDv).array() += velocity_mps * velocity_mps;
   P_.diagonal().segment<3>(kDr).array() += position_m * position_m;
   P_.block<3, 3>(kDv, kDr).diagonal().array() += velocity_mps * position_m;
@@ -121,7 +127,7 @@ UpdateReport Ekf::update(const GnssFix& fix) {
   const GnssMeasurement m =
       gnss_measurement(fix, estimate_, config_.lever_arm_b_m, omega_ib_b_radps_);
   report.dof = m.rows();
-  report.gate = gate_[report.dof];
+  report.gate = gate_[static_cast<std::size_t>(report.dof)];
   using Matrix = decltype(m.R);
   const Matrix S = m.H * P_ * m.H.transpose() + m.R;
   const Eigen::LLT<Matrix> S_llt(S);

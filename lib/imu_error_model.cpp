@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <sstream>
-#include <string>
 
 #include "leeway/error.hpp"
 
@@ -24,34 +23,36 @@ double integral_variance(double a) {
   return sum;
 }
 
-void require(bool ok, const std::string& field, double value, const char* range) {
+// The message is put together only when it is needed: a filter is made, and its model validated, in
+// the middle of a drive, where nothing may touch the heap.
+void require(bool ok, const char* owner, const char* field, double value, const char* range) {
   if (ok) return;
   std::ostringstream message;
-  message << "IMU error model: " << field << " is " << value << ", must be " << range;
+  message << "IMU error model: " << owner << field << " is " << value << ", must be " << range;
   throw Error(message.str());
 }
 
-void require_non_negative(const std::string& field, double value) {
-  require(std::isfinite(value) && value >= 0.0, field, value, "finite and >= 0");
+void require_non_negative(const char* owner, const char* field, double value) {
+  require(std::isfinite(value) && value >= 0.0, owner, field, value, "finite and >= 0");
 }
 
-void validate(const TriadErrorModel& triad, const std::string& name) {
-  require(triad.bias.allFinite(), name + ".bias", triad.bias.norm(), "finite");
-  require(triad.M.allFinite(), name + ".M", triad.M.norm(), "finite");
-  require_non_negative(name + ".bias_sigma", triad.bias_sigma);
-  require_non_negative(name + ".noise_density", triad.noise_density);
-  require_non_negative(name + ".in_run.sigma", triad.in_run.sigma);
-  require(triad.in_run.tau_s > 0.0, name + ".in_run.tau_s", triad.in_run.tau_s, "> 0");
-  require_non_negative(name + ".quantum", triad.quantum);
-  require(triad.range > 0.0, name + ".range", triad.range, "> 0");
+void validate(const TriadErrorModel& triad, const char* owner) {
+  require(triad.bias.allFinite(), owner, "bias", triad.bias.norm(), "finite");
+  require(triad.M.allFinite(), owner, "M", triad.M.norm(), "finite");
+  require_non_negative(owner, "bias_sigma", triad.bias_sigma);
+  require_non_negative(owner, "noise_density", triad.noise_density);
+  require_non_negative(owner, "in_run.sigma", triad.in_run.sigma);
+  require(triad.in_run.tau_s > 0.0, owner, "in_run.tau_s", triad.in_run.tau_s, "> 0");
+  require_non_negative(owner, "quantum", triad.quantum);
+  require(triad.range > 0.0, owner, "range", triad.range, "> 0");
 }
 
 }  // namespace
 
 GaussMarkovStep discretize(const GaussMarkov& process, double dt_s) {
-  require(std::isfinite(dt_s) && dt_s > 0.0, "dt_s", dt_s, "finite and > 0");
-  require_non_negative("sigma", process.sigma);
-  require(process.tau_s > 0.0, "tau_s", process.tau_s, "> 0");
+  require(std::isfinite(dt_s) && dt_s > 0.0, "", "dt_s", dt_s, "finite and > 0");
+  require_non_negative("", "sigma", process.sigma);
+  require(process.tau_s > 0.0, "", "tau_s", process.tau_s, "> 0");
   GaussMarkovStep step;
   if (std::isinf(process.tau_s)) {
     step.integral_gain_s = dt_s;
@@ -71,9 +72,9 @@ GaussMarkovStep discretize(const GaussMarkov& process, double dt_s) {
 }
 
 void validate(const ImuErrorModel& model) {
-  validate(model.accelerometer, "accelerometer");
-  validate(model.gyro, "gyro");
-  require(model.G_g_radps_per_mps2.allFinite(), "G_g_radps_per_mps2",
+  validate(model.accelerometer, "accelerometer.");
+  validate(model.gyro, "gyro.");
+  require(model.G_g_radps_per_mps2.allFinite(), "", "G_g_radps_per_mps2",
           model.G_g_radps_per_mps2.norm(), "finite");
 }
 

@@ -227,9 +227,8 @@ bool same_motion(const NavState& a, const NavState& b) {
 
 template <GravityModel gravity, EarthRotation rotation>
 StrapdownStep runge_kutta_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
-  constexpr std::size_t kLength = ImuHistory::kLength;
   const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
-  std::copy_backward(history.recent, history.recent + kLength - 1, history.recent + kLength);
+  std::copy_backward(history.recent.begin(), history.recent.end() - 1, history.recent.end());
   history.recent[0] = inc;
   if (history.count == 0) history.first = state;
   // The first increments were fitted with fewer than four: go back and redo them with what has come

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "leeway/earth.hpp"
 #include "leeway/imu.hpp"
@@ -31,8 +32,9 @@ enum class EarthRotation { kOff, kOn };
 /// forgotten by itself when the next increment does not follow the last one.
 struct ImuHistory {
   static constexpr int kLength = 4;
-  ImuIncrement recent[kLength]{};  ///< newest first; kTwoSample uses one, kRungeKutta4 four
-  int count{0};                    ///< how many of them are valid
+  std::array<ImuIncrement, kLength>
+      recent{};  ///< newest first; kTwoSample uses one, kRungeKutta4 four
+  int count{0};  ///< how many of them are valid
 
   // kTwoSample: what looking back added to the newest step, and whether a second one completes the
   // pair and settles it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 
 #include "leeway/filters/covariance.hpp"
@@ -65,7 +66,8 @@ class Ekf {
 
   /// Carries the state over a time without IMU data: constant velocity relative to the Earth,
   /// attitude held in the Earth-fixed frame, and an uncertainty that grows as that of a vehicle
-  /// that may turn at 0.5 rad/s and accelerate at 3 m/s^2 (1 sigma).
+  /// that may turn at 0.5 rad/s, up to 1 rad, lean by as much up to 0.1 rad, and accelerate at
+  /// 3 m/s^2 (1 sigma).
   /// @pre to > estimate().nav.time.
   void coast(Time to);
 
@@ -87,7 +89,7 @@ class Ekf {
   EkfConfig config_;
   ProcessNoise noise_;
   StrapdownFunction strapdown_step_;
-  double gate_[7]{};  // by degrees of freedom
+  std::array<double, 7> gate_{};  // by degrees of freedom
   Estimate estimate_;
   ErrorMatrix P_;
   Transition Phi_{};
