@@ -1,0 +1,93 @@
+// This program compiles the filters and the strapdown with EIGEN_RUNTIME_NO_MALLOC and with Eigen's
+// assertions on: whatever Eigen would allocate aborts it. operator new is counted besides.
+#include <doctest/doctest.h>
+
+#include <optional>
+#include <string>
+
+#include "filters/recording.hpp"
+#include "leeway/filters/navigator.hpp"
+#include "support/allocation_counter.hpp"
+
+namespace leeway {
+namespace {
+
+class NoMalloc {
+ public:
+  NoMalloc() { Eigen::internal::set_is_malloc_allowed(false); }
+  ~NoMalloc() { Eigen::internal::set_is_malloc_allowed(true); }
+  NoMalloc(const NoMalloc&) = delete;
+  NoMalloc& operator=(const NoMalloc&) = delete;
+
+  std::size_t count() const { return counter_.count(); }
+
+ private:
+  test::AllocationCounter counter_;
+};
+
+}  // namespace
+
+TEST_CASE("the counter counts") {
+  const NoMalloc guard;
+  const std::optional<std::string> heap(std::string(1000, 'x'));
+  CHECK(guard.count() > 0);
+}
+
+TEST_CASE("nothing the vehicle runs touches the heap") {
+  const sim::Trajectory trajectory = sim::circle();
+  const auto truth = sim::true_increments(trajectory, 100.0, 20.0);
+  EkfConfig config;
+  config.lever_arm_b_m = {1.0, 0.0, -1.0};
+  const auto log = test::record(trajectory, truth, config.imu, {}, 1.0, 0.5, 1);
+  const Estimate start = test::truth_estimate(trajectory, 0.0);
+  const ErrorMatrix P = initial_covariance(start, {0.01, 0.05, 0.1, 3.0}, config.imu);
+
+  SUBCASE("predict, update, coast, covariance, solution, with every scheme") {
+    for (const Scheme scheme :
+         {Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler, Scheme::kTrapezoid,
+          Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4}) {
+      config.strapdown.scheme = scheme;
+      Ekf ekf(config, start, P);
+      const NoMalloc guard;
+      int fused = 0;
+      for (std::size_t k = 0; k < 50; ++k) ekf.predict(log.imu[k]);
+      GnssFix fix = log.fixes[0];
+      fused += ekf.update(fix).outcome == UpdateReport::Outcome::kFused;
+      for (std::size_t k = 50; k < 100; ++k) ekf.predict(log.imu[k]);
+      ekf.coast(time_from_seconds(1.5));
+      fix = log.fixes[1];
+      fix.velocity.reset();
+      fused += ekf.update(fix).outcome == UpdateReport::Outcome::kFused;
+      const Solution s = solution(ekf.estimate(), ekf.covariance());
+      CHECK(guard.count() == 0);
+      CHECK(fused == 2);
+      CHECK(s.nav.time == fix.time);
+    }
+  }
+  SUBCASE("push: alignment, fixes between samples, bad data, a gap") {
+    Navigator navigator{NavigatorConfig{}};
+    GnssFix bad = log.fixes[0];
+    bad.position->R_e_m2.setZero();
+    const NoMalloc guard;
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < log.imu.size(); ++k) {
+      if (k > 1000 && k < 1100) continue;
+      while (next < log.fixes.size() && log.fixes[next].time <= log.imu[k].time) {
+        GnssFix fix = log.fixes[next++];
+        fix.time -= duration_from_seconds(0.003);
+        navigator.push(fix);
+      }
+      navigator.push(bad);
+      navigator.push(log.imu[k]);
+      navigator.push(log.imu[k]);
+    }
+    const Navigator copy = navigator;
+    const Solution s = copy.solution();
+    CHECK(guard.count() == 0);
+    CHECK(s.nav.time == log.imu.back().time);
+    CHECK(navigator.count(Verdict::kFused) > 10);
+    CHECK(navigator.count(Verdict::kGap) == 1);
+  }
+}
+
+}  // namespace leeway

@@ -1,0 +1,254 @@
+#include "leeway/filters/transition.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "filters/random_state.hpp"
+#include "leeway/sim/imu_simulator.hpp"
+#include "leeway/sim/trajectories.hpp"
+#include "support/near.hpp"
+
+namespace leeway {
+namespace {
+
+using test::near;
+using test::random_estimate;
+using test::random_vector;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kTauA = 5.0;
+constexpr double kTauG = 8.0;
+
+/// The nonlinear model: the estimate, biases included, carried along what the sensors measured. A
+/// bias decays exponentially; its integral is taken out of the increment.
+void carry(Estimate& estimate, const std::vector<ImuIncrement>& measured, double tau_a_s,
+           double tau_g_s) {
+  ImuHistory history;
+  const auto decay = [](Eigen::Vector3d& bias, double dt_s, double tau_s) -> Eigen::Vector3d {
+    if (std::isinf(tau_s)) return dt_s * bias;
+    const Eigen::Vector3d integral = -std::expm1(-dt_s / tau_s) * tau_s * bias;
+    bias *= std::exp(-dt_s / tau_s);
+    return integral;
+  };
+  for (ImuIncrement inc : measured) {
+    inc.dv_b_mps -= decay(estimate.bias.b_a_mps2, inc.dt_s, tau_a_s);
+    inc.dtheta_b_rad -= decay(estimate.bias.b_g_radps, inc.dt_s, tau_g_s);
+    strapdown_step<Scheme::kRungeKutta4>(estimate.nav, inc, history);
+  }
+}
+
+/// d (error at the end) / d (error at the start) through the nonlinear model.
+ErrorMatrix numeric_transition(const Estimate& start, const std::vector<ImuIncrement>& measured,
+                               double tau_a_s = kInf, double tau_g_s = kInf) {
+  Estimate end = start;
+  carry(end, measured, tau_a_s, tau_g_s);
+  const auto error_at_end = [&](const ErrorVector& x) {
+    Estimate truth = start;
+    inject(truth, x);
+    carry(truth, measured, tau_a_s, tau_g_s);
+    return difference(truth, end);
+  };
+  return test::central_jacobian(error_at_end, test::jacobian_steps(0.01, 100.0, 1e4, 1.0, 0.01));
+}
+
+std::vector<ImuIncrement> constant_motion(Time from, const Eigen::Vector3d& omega_b_radps,
+                                          const Eigen::Vector3d& f_b_mps2, double dt_s, int count) {
+  std::vector<ImuIncrement> increments;
+  for (int k = 1; k <= count; ++k) {
+    increments.push_back(
+        {from + k * duration_from_seconds(dt_s), dt_s, dt_s * omega_b_radps, dt_s * f_b_mps2});
+  }
+  return increments;
+}
+
+/// Phi as the filter accumulates it.
+Transition accumulated(NavState state, const std::vector<ImuIncrement>& increments) {
+  Transition Phi;
+  ImuHistory history;
+  for (const ImuIncrement& inc : increments) {
+    ErrorDynamics dynamics;
+    dynamics.dt_s = inc.dt_s;
+    dynamics.gravity_gradient_e = gravity_gradient_e(state.r_e_m);
+    const StrapdownStep step = strapdown_step<>(state, inc, history);
+    dynamics.C_eb_mean = step.C_eb_mean;
+    dynamics.dv_f_e_mps = step.dv_f_e_mps;
+    advance(Phi, dynamics);
+  }
+  return Phi;
+}
+
+ErrorDynamics random_dynamics(std::uint64_t seed) {
+  sim::Random random(seed, 3);
+  const Estimate e = random_estimate(seed);
+  ErrorDynamics d;
+  d.dt_s = 0.01;
+  d.C_eb_mean = e.nav.q_eb.toRotationMatrix();
+  d.dv_f_e_mps = d.dt_s * random_vector(random, 50.0);
+  d.gravity_gradient_e = gravity_gradient_e(e.nav.r_e_m);
+  d.tau_a_s = 20.0 + 300.0 * random.uniform();
+  d.tau_g_s = 20.0 + 300.0 * random.uniform();
+  return d;
+}
+
+/// Largest error of the 15 x 15 in units of the norm of each 3 x 3 block. The blocks that are zero
+/// in `expected` are left to the caller.
+double worst_block(const ErrorMatrix& actual, const ErrorMatrix& expected) {
+  double worst = 0.0;
+  for (int i = 0; i < kErrorStates; i += 3) {
+    for (int j = 0; j < kErrorStates; j += 3) {
+      const double norm = expected.block<3, 3>(i, j).norm();
+      if (norm == 0.0) continue;
+      const double error = (actual - expected).block<3, 3>(i, j).norm() / norm;
+      worst = std::max(worst, error);
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("F is the derivative of the nonlinear strapdown, block by block") {
+  constexpr double kStepS = 0.01;
+  // The derivative at 0 from the values at 0 to 5 steps; leaves (w step)^5 / 6 = 4e-9 at 3 rad/s.
+  constexpr std::array kForward{-137.0 / 60.0, 5.0, -5.0, 10.0 / 3.0, -1.25, 0.2};
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    sim::Random random(seed, 4);
+    const Estimate start = random_estimate(seed);
+    // 25 to 50 m/s^2: the relative bound wants a force that is there.
+    const Eigen::Vector3d f_b_mps2 =
+        25.0 * (1.0 + random.uniform()) * random.normal3().normalized();
+    const Eigen::Vector3d omega_b_radps = random_vector(random, 3.0);
+    ErrorMatrix numeric = kForward[0] * ErrorMatrix::Identity();
+    for (int k = 1; k <= 5; ++k) {
+      const auto motion = constant_motion(start.nav.time, omega_b_radps + start.bias.b_g_radps,
+                                          f_b_mps2 + start.bias.b_a_mps2, 0.5 * kStepS, 2 * k);
+      numeric +=
+          kForward[static_cast<std::size_t>(k)] * numeric_transition(start, motion, kTauA, kTauG);
+    }
+    numeric /= kStepS;
+    const Eigen::Matrix3d C_eb = start.nav.q_eb.toRotationMatrix();
+    const ErrorMatrix F =
+        system_matrix(C_eb, C_eb * f_b_mps2, gravity_gradient_e(start.nav.r_e_m), kTauA, kTauG);
+    CHECK(worst_block(numeric, F) < 1e-6);
+    // The zero blocks, within the truncation, f (w step)^4 / step of the velocity, and the rounding
+    // of six states, 1e-15 rad, 3e-13 m/s and 1e-8 m over the steps of numeric_transition.
+    const ErrorVector rounding = test::jacobian_steps(1e-15, 3e-13, 1e-8, 1e-15, 1e-15) / kStepS;
+    const ErrorVector steps = test::jacobian_steps(0.01, 100.0, 1e4, 1.0, 0.01);
+    for (int i = 0; i < kErrorStates; ++i) {
+      for (int j = 0; j < kErrorStates; ++j) {
+        CAPTURE(i);
+        CAPTURE(j);
+        if (F.block<3, 3>(i / 3 * 3, j / 3 * 3).isZero(0.0)) {
+          CHECK(near(numeric(i, j), 0.0, 1e-6 + 10.0 * rounding(i) / steps(j)));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("one step is F to second order") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    ErrorDynamics d = random_dynamics(seed);
+    const Eigen::Vector3d f_e_mps2 = d.dv_f_e_mps / d.dt_s;
+    const ErrorMatrix F =
+        system_matrix(d.C_eb_mean, f_e_mps2, d.gravity_gradient_e, d.tau_a_s, d.tau_g_s);
+    // I + F dt + (F dt)^2 / 2: what is left shrinks as dt^3, eightfold by halving.
+    const auto error = [&](double dt_s) {
+      d.dt_s = dt_s;
+      d.dv_f_e_mps = dt_s * f_e_mps2;
+      Transition Phi;
+      advance(Phi, d);
+      const ErrorMatrix Fdt = dt_s * F;
+      const ErrorMatrix second = ErrorMatrix::Identity() + Fdt + 0.5 * Fdt * Fdt;
+      return (dense(Phi) - second).norm();
+    };
+    CHECK(error(0.5) > 7.5 * error(0.25));
+    CHECK(error(0.25) > 7.5 * error(0.125));
+  }
+}
+
+TEST_CASE("accumulated Phi is the product of its steps") {
+  Transition Phi;
+  ErrorMatrix product = ErrorMatrix::Identity();
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const ErrorDynamics d = random_dynamics(seed);
+    Transition step;
+    advance(step, d);
+    product = (dense(step) * product).eval();
+    advance(Phi, d);
+  }
+  CHECK(near(Phi.dt_s, 0.5, 1e-12));
+  CHECK(worst_block(dense(Phi), product) < 1e-13);  // 50 steps of rounding
+  CHECK((dense(Phi).array() == 0.0).cwiseEqual(product.array() == 0.0).all());
+}
+
+TEST_CASE("Phi of a manoeuvre against the nonlinear strapdown, with an error that falls as dt^2") {
+  const sim::Trajectory trajectory = sim::manoeuvre_car();
+  Estimate start;
+  start.nav = sim::truth_at(trajectory, 0.0).nav;
+  const double duration_s = 1.0;
+  const ErrorMatrix numeric =
+      numeric_transition(start, sim::true_increments(trajectory, 800.0, duration_s));
+  const auto error = [&](double rate_hz) {
+    return worst_block(
+        dense(accumulated(start.nav, sim::true_increments(trajectory, rate_hz, duration_s))),
+        numeric);
+  };
+  const double at_50_hz = error(50.0);
+  const double at_100_hz = error(100.0);
+  const double at_200_hz = error(200.0);
+  MESSAGE("worst block, relative: " << at_50_hz << " " << at_100_hz << " " << at_200_hz);
+  CHECK(at_100_hz < 1e-4);
+  CHECK(at_50_hz > 3.5 * at_100_hz);
+  CHECK(at_100_hz > 3.5 * at_200_hz);
+}
+
+TEST_CASE("a transition frozen at the fix overstates a bias on a circle; advance does not") {
+  // 20 m/s on a circle of 50 m: w = 0.4 rad/s. A forward bias b moves the position by
+  // b / w^2 |exp(i w t) - 1 - i w t|, frozen by b t^2 / 2.
+  const double omega_radps = 0.4;
+  const sim::Trajectory trajectory = sim::circle({.radius_m = 50.0, .speed_mps = 20.0});
+  Estimate start;
+  start.nav = sim::truth_at(trajectory, 0.0).nav;
+  struct Case {
+    double duration_s;
+    double overstated;
+  };
+  for (const auto [duration_s, overstated] : {Case{10.0, 1.6}, Case{60.0, 12.0}}) {
+    CAPTURE(duration_s);
+    const auto increments = sim::true_increments(trajectory, 100.0, duration_s);
+    const Transition Phi = accumulated(start.nav, increments);
+    Transition frozen;
+    ErrorDynamics d;
+    d.dt_s = increments[0].dt_s;
+    d.C_eb_mean = start.nav.q_eb.toRotationMatrix();
+    d.dv_f_e_mps = d.C_eb_mean * increments[0].dv_b_mps;
+    d.gravity_gradient_e = gravity_gradient_e(start.nav.r_e_m);
+    for (std::size_t k = 0; k < increments.size(); ++k) advance(frozen, d);
+
+    const double right_m = Phi.r_a.col(0).norm();
+    const double angle = omega_radps * duration_s;
+    const double closed_m =
+        std::hypot(std::cos(angle) - 1.0, std::sin(angle) - angle) / (omega_radps * omega_radps);
+    // The closed form knows neither gravity gradient nor Coriolis: (t / 800 s)^2 of it at most.
+    CHECK(near(right_m / closed_m, 1.0, 0.01));
+    CHECK(near(frozen.r_a.col(0).norm() / right_m, overstated, 0.04 * overstated));
+
+    const auto fine = sim::true_increments(trajectory, 200.0, duration_s);
+    Estimate unbiased = start;
+    Estimate biased = start;
+    biased.bias.b_a_mps2.x() = 0.01;
+    carry(unbiased, fine, kInf, kInf);
+    carry(biased, fine, kInf, kInf);
+    const Eigen::Vector3d moved_m = biased.nav.r_e_m - unbiased.nav.r_e_m;
+    CHECK(near(moved_m, 0.01 * Phi.r_a.col(0), 1e-5 * moved_m.norm()));
+  }
+}
+
+}  // namespace leeway
