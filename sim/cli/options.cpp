@@ -1,0 +1,88 @@
+#include "options.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "leeway/imu_class.hpp"
+#include "leeway/sim/imu_model_file.hpp"
+
+namespace leeway::cli {
+namespace {
+
+constexpr std::string_view kMems = "automotive-mems";
+
+/// @returns whether the text is exactly so many finite numbers.
+bool parse_numbers(std::string_view text, double* values, int count) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < count; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return false;
+    const auto [next, error] = std::from_chars(at, end, values[i]);
+    if (error != std::errc{} || !std::isfinite(values[i])) return false;
+    at = next;
+  }
+  return at == end;
+}
+
+}  // namespace
+
+template <int N>
+CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::string& meaning,
+                         std::optional<Eigen::Matrix<double, N, 1>>& value,
+                         const std::string& description) {
+  const auto parse = [&value, name, meaning](const std::string& text) {
+    Eigen::Matrix<double, N, 1> numbers;
+    if (!parse_numbers(text, numbers.data(), N)) {
+      throw CLI::ValidationError(
+          name, "'" + text + "' is not " + meaning + ": wanted numbers with commas between");
+    }
+    value = numbers;
+  };
+  return app.add_option_function<std::string>(name, parse, description)->type_name(meaning);
+}
+
+template CLI::Option* add_numbers<2>(CLI::App&, const std::string&, const std::string&,
+                                     std::optional<Eigen::Vector2d>&, const std::string&);
+template CLI::Option* add_numbers<3>(CLI::App&, const std::string&, const std::string&,
+                                     std::optional<Eigen::Vector3d>&, const std::string&);
+
+void add_imu_options(CLI::App& app, ImuChoice& choice) {
+  std::vector<std::string> names{std::string(kMems)};
+  for (const ImuClass c : kImuClasses) names.emplace_back(name(c));
+  std::vector<std::string> ends;
+  for (const RangeEnd end : kRangeEnds) ends.emplace_back(name(end));
+  CLI::Option* by_class =
+      app.add_option("--imu-class", choice.name,
+                     "IMU error model: a car-grade MEMS part, or a class of the source paper's "
+                     "Table 1")
+          ->check(CLI::IsMember(names))
+          ->capture_default_str();
+  CLI::Option* range =
+      app.add_option("--range", choice.range,
+                     "where in the range of a Table 1 class: its ends, or the geometric mean")
+          ->check(CLI::IsMember(ends))
+          ->capture_default_str()
+          ->needs(by_class);
+  app.add_option("--imu-model", choice.model_file,
+                 "IMU error model from a TOML file (docs/guide/cli.md lists its keys)")
+      ->type_name("FILE")
+      ->excludes(by_class)
+      ->excludes(range);
+}
+
+NamedImu imu_of(const ImuChoice& choice) {
+  if (!choice.model_file.empty()) {
+    return {choice.model_file.string(), sim::read_imu_model(choice.model_file)};
+  }
+  if (choice.name == kMems) return {choice.name, automotive_mems_model()};
+  return {choice.name + "/" + choice.range,
+          imu_class_model(imu_class_from_name(choice.name), range_end_from_name(choice.range))};
+}
+
+Json json_of(const std::optional<Eigen::Vector3d>& v) {
+  return v ? Json{v->x(), v->y(), v->z()} : Json();
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,44 @@
+/// @file
+/// Options that more than one command has.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "leeway/imu_error_model.hpp"
+#include "output.hpp"
+
+namespace leeway::cli {
+
+/// An option of N numbers with commas between, the first of which may be negative.
+/// @param meaning  what the numbers are, as --help and errors say it: "X,Y,Z"
+template <int N>
+CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::string& meaning,
+                         std::optional<Eigen::Matrix<double, N, 1>>& value,
+                         const std::string& description);
+
+/// Which IMU error model: a class with its range end, or a file.
+struct ImuChoice {
+  std::string name{"automotive-mems"};
+  std::string range{"mid"};
+  std::filesystem::path model_file{};
+};
+
+void add_imu_options(CLI::App& app, ImuChoice& choice);
+
+/// A model with the name the output calls it by.
+struct NamedImu {
+  std::string name{};
+  ImuErrorModel model{};
+};
+
+/// @throws Error when the file is not a model, or a range was asked of a model without one.
+NamedImu imu_of(const ImuChoice& choice);
+
+/// Three numbers, or null.
+Json json_of(const std::optional<Eigen::Vector3d>& v);
+
+}  // namespace leeway::cli

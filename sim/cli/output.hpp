@@ -1,0 +1,61 @@
+/// @file
+/// What the commands write: tables, the one JSON object, whole files, a progress bar.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leeway::cli {
+
+/// Keys stay in the order they are added.
+using Json = nlohmann::ordered_json;
+
+/// A number with so many decimals, or "-" for what is not defined.
+std::string number(double value, int decimals);
+
+/// Aligned columns: to the right, or to the left where the heading begins with '<'.
+class Table {
+ public:
+  explicit Table(const std::vector<std::string>& headings);
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+  /// On stdout, indented by two.
+  void print() const;
+
+ private:
+  std::vector<bool> is_left_{};
+  std::vector<std::vector<std::string>> rows_{};
+};
+
+/// The contract of --json: exactly this object on stdout. Numbers that are not finite become null.
+void print_json(std::string_view command, Json input, Json results);
+
+/// Writes a file as a whole or not at all. @throws WriteFailure
+void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// A bar on stderr, where that is a terminal, once the work has taken a second. Gone afterwards.
+class Progress {
+ public:
+  explicit Progress(std::string label);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Whether anybody can see it.
+  bool visible() const { return is_terminal_; }
+  void show(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string label_;
+  bool is_terminal_;
+  Clock::time_point next_{Clock::now() + std::chrono::seconds{1}};
+  bool drawn_{false};
+};
+
+}  // namespace leeway::cli
