@@ -13,18 +13,10 @@
 #include "leeway/filters/navigator.hpp"
 #include "leeway/gnss_log.hpp"
 #include "leeway/imu_log.hpp"
+#include "leeway/sim/outage.hpp"
 #include "leeway/truth_log.hpp"
 
 namespace leeway::sim {
-
-/// A GNSS outage: fixes with start < t <= start + duration are withheld.
-struct Outage {
-  double start_s{};
-  double duration_s{};
-};
-
-/// [{"start_s": .., "duration_s": ..}, ..] @throws Error naming file, entry and what is wrong.
-std::vector<Outage> read_outages(const std::filesystem::path& path);
 
 struct ReplayInput {
   std::filesystem::path imu{};
@@ -40,18 +32,6 @@ struct ReplayInput {
   double truth_to_s{1e300};
   /// Where to start; without it the navigator aligns.
   std::optional<Alignment> start{};
-};
-
-/// What the error at the end of an outage was measured against.
-enum class Against { kNothing, kReference, kGnss };
-
-struct OutageResult {
-  Outage outage{};
-  Against against{Against::kNothing};  ///< kNothing: no solution, or nothing to compare with
-  double end_error_h_m{};
-  double end_error_v_m{};
-  double max_error_h_m{};  ///< over the withheld epochs and the end
-  double end_sigma_h_m{};  ///< the filter's own sqrt(P_NN + P_EE) at the end
 };
 
 /// Root mean squares over the solution's epochs with truth.
@@ -84,20 +64,5 @@ struct ReplayResult {
 /// @throws Error when a file cannot be read or the configuration is invalid.
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const std::function<void(Time)>& progress = {});
-
-/// Errors of all outages of one duration.
-struct OutageSummary {
-  double duration_s{};
-  std::int64_t count{0};     ///< with something to compare with
-  std::int64_t unscored{0};  ///< without
-  double rms_end_h_m{};
-  double median_end_h_m{};
-  double max_end_h_m{};
-  double rms_end_v_m{};
-  double rms_over_sigma_h{};  ///< RMS of error / sigma per horizontal axis pair: 1 when honest
-};
-
-/// By duration, shortest first.
-std::vector<OutageSummary> summarize(const std::vector<OutageResult>& outages);
 
 }  // namespace leeway::sim
