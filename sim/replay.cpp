@@ -210,7 +210,9 @@ class Replay {
         if (branch.withholds(next_fix_->time)) branch.withhold(*next_fix_);
       }
       navigator_.push(*next_fix_);
+      if (imu_started_) ++result_.fixes_in_span;
     }
+    imu_started_ = true;
     begin_branches(t);
   }
 
@@ -290,6 +292,7 @@ class Replay {
   std::optional<SolutionWriter> writer_{};
   std::vector<Branch> branches_{};
   std::optional<GnssFix> next_fix_{};
+  bool imu_started_{false};
   Time next_output_{Time::min()};
   double latest_nis_{0.0};
   int latest_dof_{0};

@@ -73,15 +73,21 @@ void print_inputs(const FuseJob& job) {
   table.print();
 }
 
+const char* why_no_solution(const sim::ReplayResult& r) {
+  return r.fixes_in_span == 0
+             ? "no fix falls into the time of the IMU data, so never aligned; t_s of both logs "
+               "must "
+               "count from the same moment"
+             : "never moved with a usable course, so never aligned (see --align-speed-mps)";
+}
+
 void print_run(const FuseJob& job) {
   const sim::ReplayResult& r = job.result;
   print_inputs(job);
   if (r.has_solution) {
     fmt::print("\nSolution from {:.3f} to {:.3f} s\n", r.first_solution_s, r.last_solution_s);
   } else {
-    fmt::print(
-        "\nNo solution: never moved with a usable course, so never aligned (see "
-        "--align-speed-mps)\n");
+    fmt::print("\nNo solution: {}\n", why_no_solution(r));
   }
   Table verdicts({"<verdict", "inputs"});
   for (std::size_t v = 0; v < kVerdicts; ++v) {
@@ -222,7 +228,7 @@ void warn(const FuseJob& job) {
   if (const auto n = count(r, Verdict::kGated); n > 0) {
     spdlog::warn("{}{} fixes were refused by the gate", where, n);
   }
-  if (!r.has_solution) spdlog::warn("{}no solution: the filter never aligned", where);
+  if (!r.has_solution) spdlog::warn("{}no solution: {}", where, why_no_solution(r));
   constexpr double kUpsideDownDeg = 90.0;
   if (std::abs(r.final_roll_deg) > kUpsideDownDeg) {
     spdlog::warn(

@@ -167,6 +167,14 @@ TEST_CASE("fuse without an answer exits with 2") {
   CHECK(at_rest.json().at("results").at("solution").is_null());
   CHECK(at_rest.json().at("results").at("nis_mean").is_null());
 
+  // 2026-11-24: fixes on another time line were blamed on the speed of the vehicle.
+  const auto other_day = dir.file("other_day.csv",
+                                  "t_s,lat_deg,lon_deg,height_m,pos_std_n_m,pos_std_e_m,"
+                                  "pos_std_d_m\n408640,45,37,100,1,1,2\n408641,45,37,100,1,1,2\n");
+  const Outcome apart = leeway(Simulated::fuse(simulated().imu, other_day));
+  CHECK(apart.exit_code == 2);
+  CHECK(contains(apart.err, "from the same moment"));
+
   const Outcome elsewhere =
       leeway(simulated().fuse_with_truth() + " --truth-window 1000,2000 --json");
   CHECK(elsewhere.exit_code == 2);

@@ -47,6 +47,7 @@ struct ReplayResult {
   double first_solution_s{};
   double last_solution_s{};
   bool has_solution{false};
+  std::int64_t fixes_in_span{0};  ///< of the IMU data; 0: the logs do not share a time line
   std::vector<OutageResult> outages{};  ///< in the order given
   RmsErrors rms{};
   std::array<std::uint64_t, kVerdicts> verdicts{};
