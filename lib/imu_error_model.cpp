@@ -40,6 +40,8 @@ void validate(const TriadErrorModel& triad, const char* owner) {
   require(triad.bias.allFinite(), owner, "bias", triad.bias.norm(), "finite");
   require(triad.M.allFinite(), owner, "M", triad.M.norm(), "finite");
   require_non_negative(owner, "bias_sigma", triad.bias_sigma);
+  require_non_negative(owner, "scale_sigma", triad.scale_sigma);
+  require_non_negative(owner, "misalignment_sigma_rad", triad.misalignment_sigma_rad);
   require_non_negative(owner, "noise_density", triad.noise_density);
   require_non_negative(owner, "in_run.sigma", triad.in_run.sigma);
   require(triad.in_run.tau_s > 0.0, owner, "in_run.tau_s", triad.in_run.tau_s, "> 0");
@@ -76,6 +78,7 @@ void validate(const ImuErrorModel& model) {
   validate(model.gyro, "gyro.");
   require(model.G_g_radps_per_mps2.allFinite(), "", "G_g_radps_per_mps2",
           model.G_g_radps_per_mps2.norm(), "finite");
+  require_non_negative("", "G_g_sigma_radps_per_mps2", model.G_g_sigma_radps_per_mps2);
 }
 
 }  // namespace leeway

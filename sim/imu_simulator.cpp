@@ -45,6 +45,12 @@ void add_smooth(const Trajectory& trajectory, double from_s, double length_s, Im
   for (int i = 0; i < count; ++i) add_panel(trajectory, from_s + i * panel_s, panel_s, sum);
 }
 
+Eigen::Matrix3d normal_matrix3(Random& random) {
+  Eigen::Matrix3d m;
+  for (int column = 0; column < 3; ++column) m.col(column) = random.normal3();
+  return m;
+}
+
 [[noreturn]] void refuse(const Trajectory& trajectory, const std::string& what) {
   std::ostringstream message;
   message << "IMU increments on '" << trajectory.name << "', " << trajectory.duration_s
@@ -102,7 +108,14 @@ std::vector<ImuIncrement> true_increments(const Trajectory& trajectory, double r
 TriadErrorSimulator::TriadErrorSimulator(const TriadErrorModel& model, Random& random)
     : model_(model),
       constant_bias_(model.bias + model.bias_sigma * random.normal3()),
-      in_run_bias_(model.in_run.sigma * random.normal3()) {}
+      in_run_bias_(model.in_run.sigma * random.normal3()) {
+  if (model.scale_sigma > 0.0) model_.M.diagonal() += model.scale_sigma * random.normal3();
+  if (model.misalignment_sigma_rad > 0.0) {
+    Eigen::Matrix3d spread = model.misalignment_sigma_rad * normal_matrix3(random);
+    spread.diagonal().setZero();
+    model_.M += spread;
+  }
+}
 
 Eigen::Vector3d TriadErrorSimulator::integrate_in_run_bias(double dt_s, Random& random) {
   if (model_.in_run.sigma == 0.0) return Eigen::Vector3d::Zero();
@@ -143,7 +156,11 @@ ImuErrorSimulator::ImuErrorSimulator(const ImuErrorModel& model, const Random& r
     : random_(random),
       G_g_((validate(model), model.G_g_radps_per_mps2)),
       accelerometer_(model.accelerometer, random_),
-      gyro_(model.gyro, random_) {}
+      gyro_(model.gyro, random_) {
+  if (model.G_g_sigma_radps_per_mps2 > 0.0) {
+    G_g_ += model.G_g_sigma_radps_per_mps2 * normal_matrix3(random_);
+  }
+}
 
 ImuIncrement ImuErrorSimulator::measure(const ImuIncrement& truth) {
   ImuIncrement reported = truth;

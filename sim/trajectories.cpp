@@ -179,6 +179,7 @@ Trajectory static_trajectory(const StaticParameters& parameters) {
   require("static: attitude.pitch_rad", m.pitch_rad.value, kNoLimit);
   require("static: attitude.yaw_rad", m.yaw_rad.value, kNoLimit);
   trajectory.motion = [m](double) { return m; };
+  trajectory.period_s = 60.0;  // any would do
   return trajectory;
 }
 
@@ -205,6 +206,7 @@ Trajectory circle(const CircleParameters& p) {
   require("circle: radius_m", p.radius_m, kPositive);
   require("circle: speed_mps", p.speed_mps, 0.0);
   trajectory.motion = [p](double t_s) { return circle_motion(p, t_s); };
+  if (p.speed_mps > 0.0) trajectory.period_s = kTwoPi * p.radius_m / p.speed_mps;
   return trajectory;
 }
 
@@ -215,6 +217,7 @@ Trajectory square_loop(const SquareLoopParameters& p) {
   require("square loop: turn_s", p.turn_s, kPositive);
   trajectory.motion = [p](double t_s) { return square_loop_motion(p, t_s); };
   const double side_s = p.straight_s + p.turn_s;
+  trajectory.period_s = 4.0 * side_s;
   for (double k = 0.0; k * side_s < p.duration_s; ++k) {
     if (k > 0.0) trajectory.breaks_s.push_back(k * side_s);
     const double turn_start_s = k * side_s + p.straight_s;

@@ -37,6 +37,8 @@ struct TriadErrorModel {
   Eigen::Vector3d bias{Eigen::Vector3d::Zero()};   ///< known constant part of b, u
   double bias_sigma{0.0};                          ///< turn-on spread of b about it, u, per axis
   Eigen::Matrix3d M{Eigen::Matrix3d::Identity()};  ///< scale on, misalignment off the diagonal
+  double scale_sigma{0.0};                         ///< spread of M's diagonal from unit to unit
+  double misalignment_sigma_rad{0.0};              ///< spread of each element off the diagonal
   double noise_density{0.0};                       ///< white noise, u/sqrt(Hz)
   GaussMarkov in_run{};                            ///< drift of b within a run, u
   double quantum{0.0};                             ///< LSB of the increment, u*s; 0: none
@@ -47,6 +49,7 @@ struct ImuErrorModel {
   TriadErrorModel accelerometer{};                              ///< [seed (1)], m/s^2
   TriadErrorModel gyro{};                                       ///< [seed (2)], rad/s
   Eigen::Matrix3d G_g_radps_per_mps2{Eigen::Matrix3d::Zero()};  ///< gyro g-sensitivity
+  double G_g_sigma_radps_per_mps2{0.0};  ///< spread of each element of it from unit to unit
 };
 
 /// @throws Error naming the field, its value and the allowed range: sigmas, densities and quanta

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct Trajectory {
   double duration_s{};                              ///< truth is defined on 0 to duration_s
   std::function<LocalMotion(double t_s)> motion{};  ///< pure: safe to share between threads
   std::vector<double> breaks_s{};                   ///< ascending; times where a derivative jumps
+  std::optional<double> period_s{};  ///< the motion repeats after this; a study may use that
 };
 
 /// The truth at one time. Satisfies exactly
