@@ -57,8 +57,7 @@ HorizontalMetric horizontal_metric_from_name(std::string_view wanted) {
 
 Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
                                       const Eigen::Matrix3d& P_rr_e_m2) {
-  const Eigen::Matrix<double, 3, 2> C_e_ne =
-      ned_to_ecef(geodetic_from_ecef(r_e_m)).leftCols<2>();
+  const Eigen::Matrix<double, 3, 2> C_e_ne = ned_to_ecef(geodetic_from_ecef(r_e_m)).leftCols<2>();
   return C_e_ne.transpose() * P_rr_e_m2 * C_e_ne;
 }
 
