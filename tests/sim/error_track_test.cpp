@@ -80,10 +80,11 @@ TEST_CASE("errors and sensor matrices act as on the nonlinear strapdown") {
     }
     CAPTURE(kind.first);
     for (const int group : {kPsi, kDv, kDr}) {
-      // 3e-5 of the largest effect of the kind: pieces of 0.1 s at 9 deg/s err by 1e-5.
+      // 5e-5 of the largest effect of the kind: pieces of 0.1 s at 9 deg/s err by 1e-5, and
+      // position integrates what a turn does to the attitude twice more.
       const double largest = exact.middleRows<3>(group).colwise().norm().maxCoeff();
       const double difference = (linear - exact).middleRows<3>(group).colwise().norm().maxCoeff();
-      CHECK(difference <= 3e-5 * largest + 1e-8 * kind.size);
+      CHECK(difference <= 5e-5 * largest + 1e-8 * kind.size);
     }
   }
 }
