@@ -95,6 +95,9 @@ class ScenePair {
 /// The extremes of a stretch of the scene.
 struct Window {
   long index{-1};  // counted back from the end
+  int fixes{0};
+  double claimed_sum_m2{0.0};
+  double true_sum_m2{0.0};
   Variances largest{Variances::Zero()};
   CovarianceAnalysis result{};
 };
@@ -162,13 +165,17 @@ class Analysis {
     variances << before.claimed.diagonal(), before.truth.diagonal();
     window_.largest = window_.largest.max(variances);
     const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(before.r_e_m));
-    const auto metric = [&](const ErrorMatrix& P) {
-      const Eigen::Matrix3d P_n = C_en.transpose() * P.block<3, 3>(kDr, kDr) * C_en;
-      return horizontal_error_m(scene_.budget.metric, P_n.topLeftCorner<2, 2>());
+    const auto horizontal = [&](const ErrorMatrix& P) -> Eigen::Matrix2d {
+      return C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>();
     };
+    const Eigen::Matrix2d claimed = horizontal(before.claimed);
+    const Eigen::Matrix2d truth = horizontal(before.truth);
+    ++window_.fixes;
+    window_.claimed_sum_m2 += claimed.trace();
+    window_.true_sum_m2 += truth.trace();
     CovarianceAnalysis& r = window_.result;
-    r.claimed_m = std::max(r.claimed_m, metric(before.claimed));
-    const double true_m = metric(before.truth);
+    r.claimed_m = std::max(r.claimed_m, horizontal_error_m(scene_.budget.metric, claimed));
+    const double true_m = horizontal_error_m(scene_.budget.metric, truth);
     if (true_m <= r.true_m) return;
     r.true_m = true_m;
     r.worst_s = t_s;
@@ -208,6 +215,8 @@ class Analysis {
     }
     compare_with_previous();
     CovarianceAnalysis r = window_.result;
+    r.claimed_drms_m = std::sqrt(window_.claimed_sum_m2 / window_.fixes);
+    r.true_drms_m = std::sqrt(window_.true_sum_m2 / window_.fixes);
     r.window_s = window_s_;
     r.fixes = fixes_;
     r.settled = settled_s_.has_value();

@@ -27,17 +27,15 @@ void WhiteSource::update(const ScalarGain& gain) {
   apply_gain(P, gain.K, cross, gain.h.dot(cross) + noise_variance);
 }
 
-MarkovSource::MarkovSource(int enters_at, const Eigen::Matrix3d& second_moment, double sigma,
-                           double tau_s, double filter_tau_s)
-    : enters_at_(enters_at),
-      sigma_(sigma),
-      tau_s_(tau_s),
-      filter_tau_s_(filter_tau_s),
-      G_(second_moment) {
+MarkovSource::MarkovSource(int enters_at, const Start& start, const GaussMarkov& process,
+                           double filter_tau_s)
+    : enters_at_(enters_at), process_(process), filter_tau_s_(filter_tau_s) {
+  const Eigen::Matrix3d variance = start.variance.asDiagonal();
+  G_ = variance + start.mean * start.mean.transpose();
   if (enters_at_ == kFixes) return;
-  // The filter starts from zero bias: its error is the bias itself.
-  P_.block<3, 3>(enters_at_, enters_at_) = G_;
-  S_.middleRows<3>(enters_at_) = G_;
+  const Eigen::Vector3d error = start.mean - start.known;
+  P_.block<3, 3>(enters_at_, enters_at_) = variance + error * error.transpose();
+  S_.middleRows<3>(enters_at_) = variance + error * start.mean.transpose();
 }
 
 void MarkovSource::propagate(const Leg& leg) {
@@ -51,13 +49,14 @@ void MarkovSource::propagate(const Leg& leg) {
 /// g' = phi g + w; a bias state that the filter lets decay by its own phi gains delta g + w on the
 /// filter's idea of it.
 void MarkovSource::step_process(double dt_s) {
-  const double phi = decay(dt_s, tau_s_);
+  const double phi = decay(dt_s, process_.tau_s);
   if (enters_at_ == kFixes) {
     S_ *= phi;
     return;
   }
   const double delta = phi - decay(dt_s, filter_tau_s_);
-  const Eigen::Matrix3d Q = sigma_ * sigma_ * (1.0 - phi * phi) * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d Q =
+      process_.sigma * process_.sigma * (1.0 - phi * phi) * Eigen::Matrix3d::Identity();
   P_.middleCols<3>(enters_at_) += delta * S_;
   P_.middleRows<3>(enters_at_) += delta * S_.transpose();
   P_.block<3, 3>(enters_at_, enters_at_) += delta * delta * G_ + Q;

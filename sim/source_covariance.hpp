@@ -37,10 +37,16 @@ class MarkovSource {
  public:
   static constexpr int kFixes = -1;
 
+  /// How g starts: a mean, of which the filter may know some, and a variance.
+  struct Start {
+    Eigen::Vector3d variance{Eigen::Vector3d::Zero()};
+    Eigen::Vector3d mean{Eigen::Vector3d::Zero()};
+    Eigen::Vector3d known{Eigen::Vector3d::Zero()};
+  };
+
   /// @param enters_at  kBa, kBg or kFixes
-  /// @param second_moment  E[g g^T] at the start
-  MarkovSource(int enters_at, const Eigen::Matrix3d& second_moment, double sigma, double tau_s,
-               double filter_tau_s);
+  /// @param process  of g; infinite tau: a constant
+  MarkovSource(int enters_at, const Start& start, const GaussMarkov& process, double filter_tau_s);
 
   void propagate(const Leg& leg);
   void update(const ScalarGain& gain);
@@ -50,12 +56,11 @@ class MarkovSource {
   void step_process(double dt_s);
 
   int enters_at_;
-  double sigma_;
-  double tau_s_;
+  GaussMarkov process_;
   double filter_tau_s_;
   ErrorMatrix P_{ErrorMatrix::Zero()};
   Eigen::Matrix<double, kErrorStates, 3> S_{Eigen::Matrix<double, kErrorStates, 3>::Zero()};
-  Eigen::Matrix3d G_;
+  Eigen::Matrix3d G_;  // E[g g^T]; S = E[error g^T]
 };
 
 /// Unknown constants of the sensors: the error is linear in them. One sensitivity serves all.

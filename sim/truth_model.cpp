@@ -6,11 +6,6 @@
 namespace leeway::sim {
 namespace {
 
-/// The sources of a triad, in the order accelerometer, gyro.
-ErrorSource of_triad(int bias_row, ErrorSource accelerometer, ErrorSource gyro) {
-  return bias_row == kBa ? accelerometer : gyro;
-}
-
 bool same(const ProcessNoise& a, const ProcessNoise& b) {
   return a.attitude_rad2_per_s == b.attitude_rad2_per_s &&
          a.velocity_m2_per_s3 == b.velocity_m2_per_s3 && a.b_a_m2_per_s5 == b.b_a_m2_per_s5 &&
@@ -29,16 +24,18 @@ TruthModel::TruthModel(const Scene& scene, const ErrorMatrix& initial_nav,
                        const ProcessNoise& filter, bool by_source)
     : by_source_(by_source), parameter_moments_(parameter_moments(scene.imu)) {
   white(ErrorSource::kInitial).P += initial_nav;
-  add_triad(scene.imu.accelerometer, kBa, filter.tau_a_s);
-  add_triad(scene.imu.gyro, kBg, filter.tau_g_s);
+  const ImuErrorModel& believed = scene.filter.imu;
+  add_triad(scene.imu.accelerometer, kBa, believed.accelerometer.bias, filter.tau_a_s);
+  add_triad(scene.imu.gyro, kBg, believed.gyro.bias, filter.tau_g_s);
   const GnssErrorModel& gnss = scene.gnss.errors;
   white(ErrorSource::kGnssPosition).fix_variance.head<3>() += gnss.position_sigma_n_m.cwiseAbs2();
   white(ErrorSource::kGnssVelocity).fix_variance.tail<3>() += gnss.velocity_sigma_n_mps.cwiseAbs2();
   if (!gnss.correlated_sigma_n_m.isZero(0.0)) {
-    const Eigen::Matrix3d variance = gnss.correlated_sigma_n_m.cwiseAbs2().asDiagonal();
-    markov_.emplace_back(
-        ErrorSource::kGnssCorrelated,
-        MarkovSource(MarkovSource::kFixes, variance, 0.0, gnss.correlation_time_s, 0.0));
+    MarkovSource::Start start;
+    start.variance = gnss.correlated_sigma_n_m.cwiseAbs2();
+    const GaussMarkov process{0.0, gnss.correlation_time_s};  // its drive never enters the error
+    markov_.emplace_back(ErrorSource::kGnssCorrelated,
+                         MarkovSource(MarkovSource::kFixes, start, process, 0.0));
   }
 }
 
@@ -47,38 +44,46 @@ WhiteSource& TruthModel::white(ErrorSource source) {
   return white_.back().second;
 }
 
-void TruthModel::add_triad(const TriadErrorModel& triad, int bias_row, double filter_tau_s) {
-  const double density = triad.noise_density * triad.noise_density;
-  ProcessNoise& noise =
-      white(of_triad(bias_row, ErrorSource::kAccelerometerNoise, ErrorSource::kGyroNoise)).noise;
-  (bias_row == kBa ? noise.velocity_m2_per_s3 : noise.attitude_rad2_per_s) += density;
+void TruthModel::add_triad(const TriadErrorModel& triad, int bias_row,
+                           const Eigen::Vector3d& known_bias, double filter_tau_s) {
+  const auto of_triad = [bias_row](ErrorSource accelerometer, ErrorSource gyro) {
+    return bias_row == kBa ? accelerometer : gyro;
+  };
+  WhiteSource& noise = white(of_triad(ErrorSource::kAccelerometerNoise, ErrorSource::kGyroNoise));
+  (bias_row == kBa ? noise.noise.velocity_m2_per_s3 : noise.noise.attitude_rad2_per_s) +=
+      triad.noise_density * triad.noise_density;
 
-  const ErrorSource bias =
-      of_triad(bias_row, ErrorSource::kAccelerometerBias, ErrorSource::kGyroBias);
-  const Eigen::Matrix3d turn_on =
-      triad.bias_sigma * triad.bias_sigma * Eigen::Matrix3d::Identity() +
-      triad.bias * triad.bias.transpose();
+  const ErrorSource bias = of_triad(ErrorSource::kAccelerometerBias, ErrorSource::kGyroBias);
+  MarkovSource::Start turn_on;
+  turn_on.variance.setConstant(triad.bias_sigma * triad.bias_sigma);
+  turn_on.mean = triad.bias;
+  turn_on.known = known_bias;
+  const bool is_zero = triad.bias_sigma == 0.0 && triad.bias.isZero(0.0) && known_bias.isZero(0.0);
   if (std::isinf(filter_tau_s)) {
-    white(bias).P.block<3, 3>(bias_row, bias_row) += turn_on;
-  } else if (!turn_on.isZero(0.0)) {
-    const double constant_s = std::numeric_limits<double>::infinity();
-    markov_.emplace_back(bias, MarkovSource(bias_row, turn_on, 0.0, constant_s, filter_tau_s));
+    const Eigen::Vector3d error = turn_on.mean - turn_on.known;
+    const Eigen::Matrix3d variance = turn_on.variance.asDiagonal();
+    white(bias).P.block<3, 3>(bias_row, bias_row) += variance + error * error.transpose();
+  } else if (!is_zero) {
+    markov_.emplace_back(bias, MarkovSource(bias_row, turn_on, GaussMarkov{}, filter_tau_s));
   }
+  add_drift(triad.in_run, bias_row,
+            of_triad(ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift), filter_tau_s);
+}
 
-  const ErrorSource drift =
-      of_triad(bias_row, ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift);
-  const GaussMarkov& in_run = triad.in_run;
-  const double variance = in_run.sigma * in_run.sigma;
-  if (variance == 0.0) return;
-  if (in_run.tau_s == filter_tau_s) {
-    WhiteSource& source = white(drift);
-    source.P.block<3, 3>(bias_row, bias_row).diagonal().array() += variance;
-    const double drive = std::isinf(in_run.tau_s) ? 0.0 : 2.0 * variance / in_run.tau_s;
-    (bias_row == kBa ? source.noise.b_a_m2_per_s5 : source.noise.b_g_rad2_per_s3) += drive;
-  } else {
-    markov_.emplace_back(drift, MarkovSource(bias_row, variance * Eigen::Matrix3d::Identity(),
-                                             in_run.sigma, in_run.tau_s, filter_tau_s));
+void TruthModel::add_drift(const GaussMarkov& in_run, int bias_row, ErrorSource drift,
+                           double filter_tau_s) {
+  if (in_run.sigma == 0.0) return;
+  MarkovSource::Start start;
+  start.variance.setConstant(in_run.sigma * in_run.sigma);
+  if (in_run.tau_s != filter_tau_s) {
+    markov_.emplace_back(drift, MarkovSource(bias_row, start, in_run, filter_tau_s));
+    return;
   }
+  // The filter's own state is the drift: nothing else need be remembered.
+  WhiteSource& source = white(drift);
+  source.P.block<3, 3>(bias_row, bias_row).diagonal() += start.variance;
+  const double drive = std::isinf(in_run.tau_s) ? 0.0 : 2.0 * start.variance.x() / in_run.tau_s;
+  (bias_row == kBa ? source.noise.b_a_m2_per_s5 : source.noise.b_g_rad2_per_s3) += drive;
 }
 
 TruthModel::ParameterMoments TruthModel::parameter_moments(const ImuErrorModel& imu) {

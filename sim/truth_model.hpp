@@ -34,7 +34,9 @@ class TruthModel {
   using ParameterMoments = std::vector<std::pair<ErrorSource, ParameterMoment>>;
 
   static ParameterMoments parameter_moments(const ImuErrorModel& imu);
-  void add_triad(const TriadErrorModel& triad, int bias_row, double filter_tau_s);
+  void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias,
+                 double filter_tau_s);
+  void add_drift(const GaussMarkov& in_run, int bias_row, ErrorSource drift, double filter_tau_s);
   WhiteSource& white(ErrorSource source);
 
   bool by_source_;

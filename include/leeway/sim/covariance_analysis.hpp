@@ -19,11 +19,11 @@ namespace leeway::sim {
 
 /// Where errors come from. Sources are independent of each other, so their variances add up.
 enum class ErrorSource {
-  kInitial,                    ///< attitude, velocity and position at the start
-  kAccelerometerBias,          ///< turn-on spread and known part
-  kAccelerometerDrift,         ///< in-run Gauss-Markov
-  kAccelerometerNoise,         ///< white
-  kAccelerometerScale,         ///< diagonal of M_a
+  kInitial,             ///< attitude, velocity and position at the start
+  kAccelerometerBias,   ///< turn-on spread, and what the filter is not told of the known part
+  kAccelerometerDrift,  ///< in-run Gauss-Markov
+  kAccelerometerNoise,  ///< white
+  kAccelerometerScale,  ///< diagonal of M_a
   kAccelerometerMisalignment,  ///< the rest of M_a
   kGyroBias,
   kGyroDrift,
@@ -72,6 +72,8 @@ struct CovarianceConfig {
 struct CovarianceAnalysis {
   double claimed_m{};  ///< by the scene's metric
   double true_m{};
+  double claimed_drms_m{};  ///< root mean square over the last part's fixes, not the largest: what
+  double true_drms_m{};     ///< a Monte Carlo of the scene averages
   double worst_s{};         ///< when the true one is largest
   CovariancePoint worst{};  ///< there
   ErrorBudget budget{};     ///< there; empty unless by_source
