@@ -27,8 +27,13 @@ BiasModel bias_model_from_name(std::string_view wanted) {
               "' is unknown: accepted are constant, gauss_markov");
 }
 
+BiasModel bias_model_of(const ImuErrorModel& model) {
+  const bool drifts = model.accelerometer.in_run.sigma > 0.0 || model.gyro.in_run.sigma > 0.0;
+  return drifts ? BiasModel::kGaussMarkov : BiasModel::kConstant;
+}
+
 ImuErrorModel with_bias_model(const ImuErrorModel& model, BiasModel bias, double tau_s) {
-  if (model.accelerometer.in_run.sigma > 0.0 || model.gyro.in_run.sigma > 0.0) {
+  if (bias_model_of(model) == BiasModel::kGaussMarkov) {
     throw Error(
         "the IMU model states an in-run drift of its own: a bias model (constant, "
         "gauss_markov) can be chosen for the Table 1 classes only");

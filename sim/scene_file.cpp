@@ -1,5 +1,7 @@
 #include "leeway/sim/scene_file.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <limits>
 #include <string>
 #include <system_error>
@@ -68,8 +70,10 @@ class SceneReader {
 
   void require_step(const TomlSection& section) const {
     if (scene_.gnss.interval_s * scene_.imu_rate_hz >= 1.0 - 1e-9) return;
-    section.fail("the interval of " + std::to_string(scene_.gnss.interval_s) +
-                 " s is shorter than the step of the IMU: raise imu_rate_hz in [scene]");
+    section.fail(
+        fmt::format("the interval of {:.9g} s is shorter than the step of an IMU at {:.9g} Hz: "
+                    "raise imu_rate_hz in [scene]",
+                    scene_.gnss.interval_s, scene_.imu_rate_hz));
   }
 
   /// What a filter is told of the receiver, unless [filter] says otherwise.
@@ -89,8 +93,8 @@ class SceneReader {
 Scene read(const TomlDocument& document, const std::filesystem::path& path,
            std::optional<double> duration_s) {
   if (duration_s && !kDuration.limits.contain(*duration_s)) {
-    throw Error("the duration of a scene is " + std::to_string(*duration_s) +
-                " s, must be 1 to 1e6 s");
+    throw Error(
+        fmt::format("the duration of a scene is {:.9g} s, must be 1 to 1e6 s", *duration_s));
   }
   SceneReader reader(path.parent_path(), path.stem().string(), duration_s);
   Scene scene;

@@ -1,3 +1,5 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <array>
 #include <limits>
 #include <string>
@@ -168,14 +170,15 @@ GnssScenario read_gnss(TomlSection& section, double duration_s, bool leave_out_l
     const Outage outage = read_outage(entry);
     const bool is_within = outage.start_s + outage.duration_s <= duration_s;
     if (!is_within && !leave_out_late_outages) {
-      entry.fail("the outage ends after the scene, which is " + std::to_string(duration_s) +
-                 " s long");
+      entry.fail(fmt::format("the outage ends at {:.9g} s, after the scene's end at {:.9g} s",
+                             outage.start_s + outage.duration_s, duration_s));
     }
     if (outage.start_s < duration_s) gnss.outages.push_back(outage);
   });
   if (gnss.interval_s > duration_s) {
-    section.fail("the interval of " + std::to_string(gnss.interval_s) +
-                 " s is longer than the scene of " + std::to_string(duration_s) + " s: no fix");
+    section.fail(
+        fmt::format("the interval of {:.9g} s is longer than the scene of {:.9g} s: no fix",
+                    gnss.interval_s, duration_s));
   }
   if (((errors.position_sigma_n_m + errors.correlated_sigma_n_m).array() <= 0.0).any()) {
     section.fail("position_sigma and correlated_sigma are both 0 on an axis: no receiver is exact");

@@ -1,3 +1,5 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <array>
 #include <numbers>
 #include <string>
@@ -47,8 +49,10 @@ void set_origin(TomlSection& section, Geodetic& origin) {
 
 void require_lateral(const TomlSection& section, double lateral_mps2) {
   if (lateral_mps2 <= kMostLateralMps2) return;
-  section.fail("the turns push sideways with " + std::to_string(lateral_mps2) +
-               " m/s^2, at most 100 is plausible: is the speed in km/h?");
+  section.fail(fmt::format(
+      "the turns push sideways with {:.3g} m/s^2, at most 100 is plausible: is the speed "
+      "in km/h?",
+      lateral_mps2));
 }
 
 Trajectory read_static(TomlSection& section, double duration_s) {

@@ -22,6 +22,9 @@ std::string_view name(BiasModel model);
 /// @throws Error listing the known names.
 BiasModel bias_model_from_name(std::string_view name);
 
+/// kGaussMarkov where the model has an in-run drift.
+BiasModel bias_model_of(const ImuErrorModel& model);
+
 /// The model with its biases so: kGaussMarkov makes the turn-on spread the sigma of an in-run
 /// drift.
 /// @throws Error when the model states an in-run drift of its own, or tau_s is not > 0.
