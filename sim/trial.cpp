@@ -12,6 +12,7 @@
 #include "leeway/filters/horizontal.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/random.hpp"
+#include "leeway/sim/receiver.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -76,8 +77,7 @@ class Trial {
   Trial(const TrialPlan& plan, std::uint64_t seed)
       : plan_(plan),
         sensor_(plan.scene().imu, Random(seed, 0, kImuStream)),
-        receiver_(plan.scene().trajectory, plan.scene().gnss.errors, Random(seed, 0, kGnssStream)),
-        outliers_(seed, 0, kOutlierStream),
+        receiver_(plan.scene().trajectory, plan.scene().gnss, seed),
         filter_(started(plan, seed)) {
     score_.seed = seed;
   }
@@ -87,13 +87,10 @@ class Trial {
  private:
   void take_fix(const TrialPlan::Fix& fix);
   void score(const Ekf& filter);
-  void judge(const UpdateReport& report, bool in_window);
-  GnssFix received(Time time);
 
   const TrialPlan& plan_;
   ImuErrorSimulator sensor_;
-  GnssSimulator receiver_;
-  Random outliers_;
+  Receiver receiver_;
   Ekf filter_;
   std::optional<Ekf> without_fix_{};  // the filter without the scored fix that is on its way
   std::size_t arrives_{};             // when that fix does
@@ -125,7 +122,8 @@ void Trial::take_fix(const TrialPlan::Fix& fix) {
     without_fix_ = filter_;
     arrives_ = fix.arrives;
   }
-  const UpdateReport report = filter_.update(received(filter_.estimate().nav.time));
+  const UpdateReport report =
+      filter_.update(receiver_.fix_at(to_seconds(filter_.estimate().nav.time)));
   if (report.outcome == UpdateReport::Outcome::kGated) ++score_.gated;
   if (report.outcome == UpdateReport::Outcome::kFused) {
     ++score_.fused;
@@ -137,15 +135,6 @@ void Trial::take_fix(const TrialPlan::Fix& fix) {
   if (!report.covariance_positive || !filter_.estimate().nav.r_e_m.allFinite()) {
     score_.finite = false;
   }
-}
-
-GnssFix Trial::received(Time time) {
-  const GnssScenario& gnss = plan_.scene().gnss;
-  GnssFix fix = receiver_.fix_at(to_seconds(time));
-  if (gnss.outlier_probability > 0.0 && outliers_.uniform() < gnss.outlier_probability) {
-    fix.position->r_e_m += gnss.outlier_sigma_m * outliers_.normal3();
-  }
-  return fix;
 }
 
 void Trial::score(const Ekf& filter) {
