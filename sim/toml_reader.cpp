@@ -80,7 +80,7 @@ std::optional<double> TomlValue::as_written() const {
   return {};
 }
 
-std::string TomlValue::text() const { return in_quotes(key()) + " = " + text_of(*as_written()); }
+std::string TomlValue::text() const { return text_of(as_written().value_or(NAN)); }
 
 double TomlValue::number(std::string_view otherwise) const {
   const double si = unit_ != nullptr ? unit_->si : 1.0;
