@@ -1,13 +1,21 @@
 #include "scene_options.hpp"
 
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <algorithm>
+
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
 #include "leeway/sim/bias_model.hpp"
+#include "leeway/sim/imu_catalogue.hpp"
 #include "leeway/sim/scene_file.hpp"
 #include "options.hpp"
 
 namespace leeway::cli {
 namespace {
+
+constexpr const char* kMems = "automotive-mems";
 
 template <class Values>
 std::vector<std::string> names_of(const Values& values) {
@@ -16,9 +24,18 @@ std::vector<std::string> names_of(const Values& values) {
   return names;
 }
 
-/// --range says where in a class; a name that is none has no range to say.
+/// A class, whose range --range is about, or a part of the catalogue.
 NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
-  return imu_of({.name = wanted, .range = choice.range});
+  const std::vector<std::string> classes = names_of(kImuClasses);
+  const bool is_class = std::find(classes.begin(), classes.end(), wanted) != classes.end();
+  if (is_class || wanted == kMems) return imu_of({.name = wanted, .range = choice.range});
+  try {
+    const sim::ImuPart& part = sim::imu_part(wanted);
+    return {std::string(part.name), imu_model(part)};
+  } catch (const Error& error) {
+    throw Error(fmt::format("--imu {}: neither a class ({}, {}) nor a part: {}", wanted,
+                            fmt::join(classes, ", "), kMems, error.what()));
+  }
 }
 
 sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, const std::string& bias) {
@@ -67,7 +84,8 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   CLI::Option* imu =
       app.add_option("--imu", choice.imus,
                      "IMU in place of the scene's, for truth and filter: marine, aviation, "
-                     "intermediate, tactical, automotive, automotive-mems; several with commas")
+                     "intermediate, tactical, automotive, automotive-mems, or a part of the "
+                     "catalogue; several with commas")
           ->type_name("NAME")
           ->delimiter(',');
   app.add_option("--range", choice.range, "where in the range of a Table 1 class")
