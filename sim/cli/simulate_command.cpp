@@ -1,7 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -9,14 +7,12 @@
 #include <string>
 
 #include "commands.hpp"
-#include "leeway/gnss_log.hpp"
-#include "leeway/imu_log.hpp"
-#include "leeway/sim/gnss_simulator.hpp"
-#include "leeway/sim/imu_simulator.hpp"
+#include "leeway/sim/scene_file.hpp"
 #include "leeway/sim/trajectories.hpp"
-#include "leeway/truth_log.hpp"
 #include "options.hpp"
 #include "output.hpp"
+#include "scene_logs.hpp"
+#include "scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -32,16 +28,15 @@ struct GnssOptions {
 };
 
 struct SimulateOptions {
+  std::filesystem::path scene{};  ///< in place of the options from here ..
   std::string trajectory{};
   double duration_s{600.0};
   double imu_rate_hz{200.0};
-  double truth_rate_hz{20.0};
-  std::uint64_t seed{1};
   ImuChoice imu{};
   GnssOptions gnss{};
-  std::optional<Eigen::Vector3d> lever_arm_b_m{};
-  std::filesystem::path out{};
-  bool gzip{false};
+  std::optional<Eigen::Vector3d> lever_arm_b_m{};  ///< .. to here
+  std::optional<std::uint64_t> seed{};
+  SceneLogOptions logs{};
   bool json{false};
 };
 
@@ -76,129 +71,84 @@ sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
   return model;
 }
 
-/// Number of steps of 1 / rate that fit, forgiving the rounding of their product.
-std::int64_t steps(double duration_s, double rate_hz) {
-  return static_cast<std::int64_t>(std::floor(duration_s * rate_hz * (1.0 + 1e-12)));
+sim::Scene scene_from_options(const SimulateOptions& options) {
+  const NamedImu imu = imu_of(options.imu);
+  sim::Scene scene;
+  scene.name = options.trajectory;
+  scene.trajectory = factories().at(options.trajectory)(options.duration_s);
+  scene.duration_s = options.duration_s;
+  scene.imu_rate_hz = options.imu_rate_hz;
+  set_imu(scene, imu.name, imu.model);
+  scene.gnss.errors = gnss_model(options);
+  scene.gnss.interval_s = options.gnss.interval_s;
+  return scene;
 }
 
-/// The three logs, written one after the other so that memory stays constant.
-class Simulation {
- public:
-  explicit Simulation(const SimulateOptions& options)
-      : options_(options),
-        trajectory_(factories().at(options.trajectory)(options.duration_s)),
-        imu_(imu_of(options.imu)),
-        imu_errors_(imu_.model, sim::Random(options.seed, 0, sim::kImuStream)),
-        gnss_(trajectory_, gnss_model(options), sim::Random(options.seed, 0, sim::kGnssStream)) {}
+Json options_json(const SimulateOptions& options, const sim::Scene& scene) {
+  const GnssOptions& g = options.gnss;
+  return {{"trajectory", options.trajectory},
+          {"duration_s", options.duration_s},
+          {"imu_rate_hz", options.imu_rate_hz},
+          {"imu_model", scene.imu_name},
+          {"gnss_interval_s", g.interval_s},
+          {"gnss_sigma_h_m", g.sigma_h_m},
+          {"gnss_sigma_v_m", g.sigma_v_m},
+          {"gnss_sigma_velocity_mps", g.sigma_velocity_mps},
+          {"gnss_correlated_sigma_m", g.correlated_sigma_m},
+          {"gnss_correlation_s", g.correlation_s},
+          {"lever_arm_m", json_of(options.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))}};
+}
 
-  std::filesystem::path path(const char* stem) const {
-    return options_.out / (std::string(stem) + (options_.gzip ? ".csv.gz" : ".csv"));
-  }
+Json input_json(const SimulateOptions& options, const sim::Scene& scene) {
+  Json input = options.scene.empty() ? options_json(options, scene) : scene_json(scene);
+  input["truth_rate_hz"] = options.logs.truth_rate_hz;
+  input["seed"] = options.logs.seed;
+  return input;
+}
 
-  void write(Progress& progress) {
-    write_imu(progress);
-    write_gnss();
-    write_truth();
-    write_file(options_.out / "scene.json", input_json().dump(2) + "\n");
-  }
+Json results_json(const SceneLogs& logs, const std::filesystem::path& description) {
+  return {{"imu", logs.imu.string()},
+          {"gnss", logs.gnss.string()},
+          {"truth", logs.truth.string()},
+          {"scene", description.string()},
+          {"imu_increments", logs.imu_increments},
+          {"gnss_fixes", logs.gnss_fixes},
+          {"truth_rows", logs.truth_rows}};
+}
 
-  Json input_json() const {
-    const GnssOptions& g = options_.gnss;
-    return {{"trajectory", options_.trajectory},
-            {"duration_s", options_.duration_s},
-            {"imu_rate_hz", options_.imu_rate_hz},
-            {"imu_model", imu_.name},
-            {"gnss_interval_s", g.interval_s},
-            {"gnss_sigma_h_m", g.sigma_h_m},
-            {"gnss_sigma_v_m", g.sigma_v_m},
-            {"gnss_sigma_velocity_mps", g.sigma_velocity_mps},
-            {"gnss_correlated_sigma_m", g.correlated_sigma_m},
-            {"gnss_correlation_s", g.correlation_s},
-            {"lever_arm_m", json_of(options_.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))},
-            {"truth_rate_hz", options_.truth_rate_hz},
-            {"seed", options_.seed}};
-  }
-
-  Json results_json() const {
-    return {{"imu", path("imu").string()},        {"gnss", path("gnss").string()},
-            {"truth", path("truth").string()},    {"scene", (options_.out / "scene.json").string()},
-            {"imu_increments", imu_increments()}, {"gnss_fixes", gnss_fixes()},
-            {"truth_rows", truth_rows()}};
-  }
-
-  std::int64_t imu_increments() const { return steps(options_.duration_s, options_.imu_rate_hz); }
-  std::int64_t gnss_fixes() const {
-    return steps(options_.duration_s, 1.0 / options_.gnss.interval_s);
-  }
-  std::int64_t truth_rows() const { return steps(options_.duration_s, options_.truth_rate_hz) + 1; }
-
- private:
-  void write_imu(Progress& progress) {
-    ImuLogWriter writer(path("imu"));
-    const std::int64_t count = imu_increments();
-    double from_s = 0.0;
-    for (std::int64_t k = 1; k <= count; ++k) {
-      const double to_s = time_s(k, options_.imu_rate_hz);
-      writer.write(imu_errors_.measure(sim::true_increment(trajectory_, from_s, to_s)));
-      from_s = to_s;
-      progress.show(static_cast<double>(k) / static_cast<double>(count));
-    }
-    writer.close();
-  }
-
-  void write_gnss() {
-    GnssLogWriter writer(path("gnss"));
-    for (std::int64_t k = 1; k <= gnss_fixes(); ++k) {
-      writer.write(gnss_.fix_at(time_s(k, 1.0 / options_.gnss.interval_s)));
-    }
-    writer.close();
-  }
-
-  void write_truth() {
-    TruthLogWriter writer(path("truth"));
-    for (std::int64_t k = 0; k < truth_rows(); ++k) {
-      const double t_s = time_s(k, options_.truth_rate_hz);
-      writer.write({ned_from_nav_state(sim::truth_at(trajectory_, t_s).nav), true, true});
-    }
-    writer.close();
-  }
-
-  double time_s(std::int64_t k, double rate_hz) const {
-    return std::min(static_cast<double>(k) / rate_hz, options_.duration_s);
-  }
-
-  const SimulateOptions& options_;
-  sim::Trajectory trajectory_;
-  NamedImu imu_;
-  sim::ImuErrorSimulator imu_errors_;
-  sim::GnssSimulator gnss_;
-};
-
-void print_report(const SimulateOptions& options, const Simulation& simulation) {
-  fmt::print("Simulated {} s of '{}' into {}\n", options.duration_s, options.trajectory,
-             options.out.string());
+void print_report(const SimulateOptions& options, const sim::Scene& scene, const SceneLogs& logs) {
+  fmt::print("Simulated {} s of '{}' into {}\n", scene.duration_s, scene.name,
+             options.logs.out.string());
   Table table({"<log", "rows", "<file"});
-  table.add({"IMU increments", std::to_string(simulation.imu_increments()),
-             simulation.path("imu").string()});
-  table.add(
-      {"GNSS fixes", std::to_string(simulation.gnss_fixes()), simulation.path("gnss").string()});
-  table.add({"truth", std::to_string(simulation.truth_rows()), simulation.path("truth").string()});
+  table.add({"IMU increments", std::to_string(logs.imu_increments), logs.imu.string()});
+  table.add({"GNSS fixes", std::to_string(logs.gnss_fixes), logs.gnss.string()});
+  table.add({"truth", std::to_string(logs.truth_rows), logs.truth.string()});
   table.print();
+  if (scene.gnss.latency_s > 0.0) {
+    fmt::print("Fixes have the time they are valid at; the scene delivers them {} s later.\n",
+               scene.gnss.latency_s);
+  }
 }
 
-int run(const SimulateOptions& options) {
-  Simulation simulation(options);
-  writing([&] {
-    std::error_code error;
-    std::filesystem::create_directories(options.out, error);
-    if (error) throw Error(options.out.string() + ": " + error.message());
+int run(SimulateOptions options) {
+  if (options.scene.empty() && options.trajectory.empty()) {
+    throw Error("simulate: give --scene FILE.toml or --trajectory NAME");
+  }
+  const sim::Scene scene =
+      options.scene.empty() ? scene_from_options(options) : sim::read_scene(options.scene);
+  options.logs.seed = options.seed.value_or(scene.first_seed);
+  validate(scene);
+  const std::filesystem::path description = options.logs.out / "scene.json";
+  const SceneLogs logs = writing([&] {
     Progress progress("simulate");
-    simulation.write(progress);
+    SceneLogs written = write_scene_logs(scene, options.logs, progress);
+    write_file(description, input_json(options, scene).dump(2) + "\n");
+    return written;
   });
   if (options.json) {
-    print_json("simulate", simulation.input_json(), simulation.results_json());
+    print_json("simulate", input_json(options, scene), results_json(logs, description));
   } else {
-    print_report(options, simulation);
+    print_report(options, scene, logs);
   }
   return kSuccess;
 }
@@ -218,6 +168,13 @@ void add_gnss_options(CLI::App& app, GnssOptions& g) {
   add("--gnss-correlation-s", g.correlation_s, "its correlation time, s");
 }
 
+/// A scene file says all that the options before it would.
+void exclude_all(CLI::App& app, CLI::Option* scene) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option != scene && option != app.get_help_ptr()) option->excludes(scene);
+  }
+}
+
 }  // namespace
 
 void add_simulate_command(CLI::App& program, int& exit_code) {
@@ -227,8 +184,7 @@ void add_simulate_command(CLI::App& program, int& exit_code) {
   std::vector<std::string> trajectories;
   for (const auto& [name, make] : factories()) trajectories.push_back(name);
   app->add_option("--trajectory", options->trajectory, "the motion")
-      ->check(CLI::IsMember(trajectories))
-      ->required();
+      ->check(CLI::IsMember(trajectories));
   app->add_option("--duration-s", options->duration_s, "length, s")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
@@ -239,19 +195,23 @@ void add_simulate_command(CLI::App& program, int& exit_code) {
   add_gnss_options(*app, options->gnss);
   add_numbers<3>(*app, "--lever", "X,Y,Z", options->lever_arm_b_m,
                  "IMU to antenna, forward, right, down, m (default: 0,0,0)");
-  app->add_option("--truth-rate-hz", options->truth_rate_hz, "truth rows per second")
+  exclude_all(*app, app->add_option("--scene", options->scene,
+                                    "scene file, in place of all options above it")
+                        ->type_name("FILE.toml"));
+  app->add_option("--truth-rate-hz", options->logs.truth_rate_hz, "truth rows per second")
       ->check(CLI::Range(0.1, 1e4))
       ->capture_default_str();
-  app->add_option("--seed", options->seed, "of the random numbers")->capture_default_str();
-  app->add_option("--out", options->out, "folder to write to; made when missing")
+  app->add_option("--seed", options->seed, "of the random numbers (default: 1, or the scene's)");
+  app->add_option("--out", options->logs.out, "folder to write to; made when missing")
       ->type_name("DIR")
       ->required();
-  app->add_flag("--gzip", options->gzip, "compress the logs: imu.csv.gz and so on");
+  app->add_flag("--gzip", options->logs.gzip, "compress the logs: imu.csv.gz and so on");
   app->add_flag("--json", options->json, "one JSON object on standard output instead of a table");
   app->footer(
       "The GNSS defaults are typical of a single-frequency code receiver under open sky.\n"
       "Example:\n"
-      "  leeway simulate --trajectory car --duration-s 1800 --imu-class tactical --out drive");
+      "  leeway simulate --trajectory car --duration-s 1800 --imu-class tactical --out drive\n"
+      "  leeway simulate --scene docs/examples/scenes/tunnel.toml --out tunnel");
   app->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -19,6 +19,7 @@ enum RandomStream : std::uint32_t {
   kImuStream,
   kGnssStream,
   kInitialStateStream,
+  kOutlierStream,
   kFirstFreeStream
 };
 

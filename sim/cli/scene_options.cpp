@@ -1,0 +1,129 @@
+#include "scene_options.hpp"
+
+#include "leeway/error.hpp"
+#include "leeway/imu_class.hpp"
+#include "leeway/sim/bias_model.hpp"
+#include "leeway/sim/scene_file.hpp"
+#include "options.hpp"
+
+namespace leeway::cli {
+namespace {
+
+template <class Values>
+std::vector<std::string> names_of(const Values& values) {
+  std::vector<std::string> names;
+  for (const auto value : values) names.emplace_back(name(value));
+  return names;
+}
+
+/// --range says where in a class; a name that is none has no range to say.
+NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
+  return imu_of({.name = wanted, .range = choice.range});
+}
+
+sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, const std::string& bias) {
+  if (bias.empty()) {
+    set_imu(scene, imu.name, imu.model);
+  } else {
+    set_imu(scene, imu.name, with_bias_model(imu.model, sim::bias_model_from_name(bias)));
+  }
+  return scene;
+}
+
+sim::Scene changed_scene(const SceneChoice& choice) {
+  sim::Scene scene = sim::read_scene(choice.file, choice.at_s);
+  if (!choice.metric.empty()) {
+    scene.budget.metric = horizontal_metric_from_name(choice.metric);
+  }
+  if (!choice.limits_m.empty()) scene.budget.limit_m = choice.limits_m.front();
+  if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
+  return scene;
+}
+
+Json gnss_json(const sim::GnssScenario& gnss) {
+  Json outages = Json::array();
+  for (const sim::Outage& outage : gnss.outages) {
+    outages.push_back({{"start_s", outage.start_s}, {"duration_s", outage.duration_s}});
+  }
+  const sim::GnssErrorModel& errors = gnss.errors;
+  return {{"interval_s", gnss.interval_s},
+          {"position_sigma_ned_m", json_of(errors.position_sigma_n_m)},
+          {"velocity_sigma_ned_mps", json_of(errors.velocity_sigma_n_mps)},
+          {"correlated_sigma_ned_m", json_of(errors.correlated_sigma_n_m)},
+          {"correlation_s", errors.correlation_time_s},
+          {"lever_arm_m", json_of(errors.lever_arm_b_m)},
+          {"latency_s", gnss.latency_s},
+          {"outlier_probability", gnss.outlier_probability},
+          {"outlier_sigma_m", gnss.outlier_sigma_m},
+          {"outages", std::move(outages)}};
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& app, SceneChoice& choice) {
+  app.add_option("--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)")
+      ->type_name("FILE.toml")
+      ->required();
+  CLI::Option* imu =
+      app.add_option("--imu", choice.imus,
+                     "IMU in place of the scene's, for truth and filter: marine, aviation, "
+                     "intermediate, tactical, automotive, automotive-mems; several with commas")
+          ->type_name("NAME")
+          ->delimiter(',');
+  app.add_option("--range", choice.range, "where in the range of a Table 1 class")
+      ->check(CLI::IsMember(names_of(kRangeEnds)))
+      ->capture_default_str()
+      ->needs(imu);
+  app.add_option("--bias", choice.bias,
+                 "what the biases of a Table 1 class do after turn-on: stay, or wander with a "
+                 "correlation time of an hour")
+      ->check(CLI::IsMember(names_of(sim::kBiasModels)));
+  app.add_option("--metric", choice.metric, "how a horizontal error is measured")
+      ->check(CLI::IsMember(names_of(kHorizontalMetrics)));
+  app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
+      ->check(CLI::PositiveNumber)
+      ->type_name("M")
+      ->delimiter(',');
+  app.add_option("--at", choice.at_s,
+                 "end the scene at this time, s, earlier or later than it does")
+      ->check(CLI::Range(1.0, 1e6))
+      ->type_name("SECONDS");
+  app.add_option("--interval-s", choice.interval_s, "time between fixes, s")
+      ->check(CLI::Range(1e-3, 1e6));
+}
+
+std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
+  const sim::Scene base = changed_scene(choice);
+  std::vector<sim::Scene> scenes;
+  for (const std::string& imu : choice.imus) {
+    scenes.push_back(with_imu(base, imu_named(imu, choice), choice.bias));
+  }
+  if (scenes.empty() && choice.bias.empty()) scenes.push_back(base);
+  if (scenes.empty()) scenes.push_back(with_imu(base, {base.imu_name, base.imu}, choice.bias));
+  for (const sim::Scene& scene : scenes) validate(scene);
+  return scenes;
+}
+
+sim::Scene scene_of(const SceneChoice& choice) {
+  if (choice.imus.size() > 1) {
+    throw Error("--imu: this command takes one IMU, not " + std::to_string(choice.imus.size()));
+  }
+  return scenes_of(choice).front();
+}
+
+Json scene_json(const sim::Scene& scene) {
+  return {{"scene", scene.name},
+          {"motion", scene.trajectory.name},
+          {"duration_s", scene.duration_s},
+          {"imu_rate_hz", scene.imu_rate_hz},
+          {"imu_model", scene.imu_name},
+          {"bias_model", name(sim::bias_model_of(scene.imu))},
+          {"gnss", gnss_json(scene.gnss)},
+          {"gate_probability", scene.filter.gate_probability},
+          {"metric", name(scene.budget.metric)},
+          {"limit_m", scene.budget.limit_m},
+          {"trials", scene.trials},
+          {"first_seed", scene.first_seed}};
+}
+
+}  // namespace leeway::cli

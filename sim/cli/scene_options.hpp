@@ -1,0 +1,42 @@
+/// @file
+/// Which scene a command is about: a file, and what the command line changes in it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "leeway/sim/scene.hpp"
+#include "output.hpp"
+
+namespace leeway::cli {
+
+struct SceneChoice {
+  std::filesystem::path file{};
+  std::vector<std::string> imus{};  ///< empty: the scene's
+  std::string range{"mid"};         ///< of those that are Table 1 classes
+  std::string bias{};               ///< empty: as the scene or the model has it
+  std::string metric{};             ///< empty: the scene's
+  std::vector<double> limits_m{};   ///< empty: the scene's
+  std::optional<double> at_s{};
+  std::optional<double> interval_s{};
+};
+
+/// --scene, required, and the options that change it.
+void add_scene_options(CLI::App& app, SceneChoice& choice);
+
+/// The scene with the changes, one for each IMU asked for. An IMU from the command line is also
+/// what the filter believes; of several limits a scene has the first.
+/// @throws Error when the file is not a scene, a name is unknown, the trajectory ends before at_s,
+/// or a change does not fit.
+std::vector<sim::Scene> scenes_of(const SceneChoice& choice);
+
+/// For commands about one scene. @throws Error also when several IMUs were asked for.
+sim::Scene scene_of(const SceneChoice& choice);
+
+/// What the scene is, for the input of --json.
+Json scene_json(const sim::Scene& scene);
+
+}  // namespace leeway::cli
