@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   add_drift_command(program, exit_code);
   add_simulate_command(program, exit_code);
   add_fuse_command(program, exit_code);
+  add_imu_command(program, exit_code);
   try {
     refuse_unknown_command(program, argc, argv);
     program.parse(argc, argv);
