@@ -56,7 +56,7 @@ class Outlook {
   TimeToLimit search();
 
  private:
-  static constexpr int kLevels = 6;  // the shortest step is below 1/32 of the one that passed
+  static constexpr int kLevels = 5;  // the shortest step is at most 1/16 of the one that passed
 
   Coasting& level(int k) { return levels_[static_cast<std::size_t>(k % kLevels)]; }
   double turn_period_s() const { return 2.0 * std::numbers::pi / std::abs(motion_.turn_radps); }
@@ -97,20 +97,20 @@ double Outlook::rough_time_s() const {
 /// Short against the answer and the motion; a turn, where there is one, is a power of two of it, so
 /// that whole turns are steps.
 double Outlook::first_step_s() const {
-  const double step_s = std::min({rough_time_s() / 32.0, kLongestFirstStepS,
+  const double step_s = std::min({rough_time_s() / 16.0, kLongestFirstStepS,
                                   kLargestFirstTurnRad / motion_.omega_el_radps.norm()});
   const double period_s = turn_period_s();
   if (period_s > kLeewayHorizonS) return step_s;
   return period_s / std::exp2(std::ceil(std::log2(period_s / step_s)));
 }
 
-/// How many of a step make the next longer one: two, but eight where steps reach an eighth of a
+/// How many of a step make the next longer one: two, but four where steps reach a quarter of a
 /// period in which errors may grow and shrink, to look into that period.
 int Outlook::copies(double step_s) const {
-  const auto is_eighth = [step_s](double period_s) {
-    return step_s < 0.13 * period_s && 0.13 * period_s <= 2.0 * step_s;
+  const auto is_quarter = [step_s](double period_s) {
+    return step_s < 0.26 * period_s && 0.26 * period_s <= 2.0 * step_s;
   };
-  return is_eighth(kSchulerPeriodS) || is_eighth(turn_period_s()) ? 8 : 2;
+  return is_quarter(kSchulerPeriodS) || is_quarter(turn_period_s()) ? 4 : 2;
 }
 
 /// North and east components of the covariance at the end of a step from where P_ is.
@@ -120,9 +120,9 @@ Eigen::Matrix2d Outlook::after(const Coasting& step, double end_s) const {
   Eigen::Matrix<double, 2, kErrorStates> rows;
   rows << C_ne_e * Phi.r_psi, C_ne_e * Phi.r_v, C_ne_e * Phi.r_r, C_ne_e * Phi.r_a,
       C_ne_e * Phi.r_g;
-  const Eigen::Matrix<double, 2, kErrorStates> rows_P = rows * P_;
+  const Eigen::Matrix<double, 2, kErrorStates> rows_P = rows.lazyProduct(P_);
   const Eigen::Matrix2d P_l =
-      rows_P * rows.transpose() + C_ne_e * step.Q.block<3, 3>(kDr, kDr) * C_e_ne_;
+      rows_P.lazyProduct(rows.transpose()) + C_ne_e * step.Q.block<3, 3>(kDr, kDr) * C_e_ne_;
   if (limit_.metric != HorizontalMetric::kAxis) return P_l;
   // The axes l have turned with the vehicle; the other metrics do not ask where north is.
   const Eigen::Matrix2d C_nl = Eigen::Rotation2Dd(motion_.turn_radps * end_s).toRotationMatrix();
