@@ -164,10 +164,8 @@ UpdateReport Ekf::update(const GnssFix& fix) {
 }
 
 double Ekf::position_weight(Time t) const {
-  if (!last_position_fix_ || config_.gnss_correlation_s == 0.0) return 1.0;
-  // (1 - a) / (1 + a) is the tanh; a second fix at the same time repeats the first: weight 0.
-  return std::sqrt(
-      std::tanh(0.5 * to_seconds(t - *last_position_fix_) / config_.gnss_correlation_s));
+  if (!last_position_fix_) return 1.0;
+  return gnss_position_weight(to_seconds(t - *last_position_fix_), config_.gnss_correlation_s);
 }
 
 ErrorMatrix Ekf::covariance() const {

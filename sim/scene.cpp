@@ -67,8 +67,8 @@ InitialSigma initial_sigma(const Scene& scene) {
       wgs84::kRotationRateRadps * std::cos(scene.trajectory.plane.origin.lat_rad);
   InitialSigma sigma;
   sigma.tilt_rad = bias_sigma(scene.imu.accelerometer) / kLevellingGravityMps2;
-  sigma.heading_rad = std::clamp(bias_sigma(scene.imu.gyro) / earth_rate_radps, kLeastHeadingRad,
-                                 kMostHeadingRad);
+  sigma.heading_rad =
+      std::clamp(bias_sigma(scene.imu.gyro) / earth_rate_radps, kLeastHeadingRad, kMostHeadingRad);
   sigma.velocity_mps = scene.gnss.errors.velocity_sigma_n_mps.maxCoeff();
   sigma.position_m = std::hypot(scene.gnss.errors.position_sigma_n_m.head<2>().maxCoeff(),
                                 scene.gnss.errors.correlated_sigma_n_m.head<2>().maxCoeff());

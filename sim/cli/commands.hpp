@@ -35,5 +35,7 @@ auto writing(F&& write) {
 void add_drift_command(CLI::App& program, int& exit_code);
 void add_simulate_command(CLI::App& program, int& exit_code);
 void add_fuse_command(CLI::App& program, int& exit_code);
+void add_interval_command(CLI::App& program, int& exit_code);
+void add_analyze_command(CLI::App& program, int& exit_code);
 
 }  // namespace leeway::cli

@@ -34,6 +34,8 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExitCodes);
   int exit_code = kSuccess;
+  add_interval_command(program, exit_code);
+  add_analyze_command(program, exit_code);
   add_drift_command(program, exit_code);
   add_simulate_command(program, exit_code);
   add_fuse_command(program, exit_code);
