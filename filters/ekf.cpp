@@ -78,6 +78,9 @@ void Ekf::predict(const ImuIncrement& inc) {
   corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
   corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
   omega_ib_b_radps_ = inc.dtheta_b_rad / inc.dt_s;
+  mean_rate_window_s_ = std::max(std::min(mean_rate_window_s_ + inc.dt_s, kMeanRateS), inc.dt_s);
+  mean_omega_ib_b_radps_ +=
+      inc.dt_s / mean_rate_window_s_ * (omega_ib_b_radps_ - mean_omega_ib_b_radps_);
 
   ErrorDynamics dynamics;
   dynamics.dt_s = inc.dt_s;

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "campaign_sums.hpp"
+#include "fingerprint.hpp"
 #include "leeway/error.hpp"
 #include "leeway/filters/chi_square.hpp"
-#include "leeway/sim/campaign_sums.hpp"
-#include "leeway/sim/fingerprint.hpp"
 #include "leeway/sim/parallel.hpp"
-#include "leeway/sim/seed_set.hpp"
 #include "leeway/sim/trial.hpp"
 #include "leeway/sim/trial_journal.hpp"
+#include "seed_set.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "leeway/sim/campaign_sums.hpp"
+#include "campaign_sums.hpp"
 
 #include <cstddef>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "leeway/sim/fingerprint.hpp"
+#include "fingerprint.hpp"
 
 #include <cstddef>
 #include <string>

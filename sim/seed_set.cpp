@@ -1,4 +1,4 @@
-#include "leeway/sim/seed_set.hpp"
+#include "seed_set.hpp"
 
 #include <algorithm>
 #include <iterator>

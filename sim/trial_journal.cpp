@@ -14,7 +14,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "leeway/sim/fingerprint.hpp"
+#include "fingerprint.hpp"
 
 namespace leeway::sim {
 namespace {

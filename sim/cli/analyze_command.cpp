@@ -72,9 +72,11 @@ void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
              leeway::name(scene.budget.metric), r.window_s, r.true_m, r.worst_s);
   fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
-  fmt::print(r.settled ? "Settled since {:g} s: every sigma repeats to 0.1 %.\n\n"
-                       : "Still settling at the scene's end, {:g} s.\n\n",
-             r.settled_s);
+  if (r.settled) {
+    fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);
+  } else {
+    fmt::print("Still settling at the scene's end, {:g} s.\n\n", r.settled_s);
+  }
   print_sigmas(r.worst);
   fmt::print("\nWhere the true error comes from\n");
   print_budget(r.budget);

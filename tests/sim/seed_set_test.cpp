@@ -1,4 +1,4 @@
-#include "leeway/sim/seed_set.hpp"
+#include "sim/seed_set.hpp"
 
 #include <doctest/doctest.h>
 
