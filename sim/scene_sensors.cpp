@@ -100,7 +100,10 @@ NamedImuModel read_part(const TomlSection& section, const std::string& wanted) {
 
 NamedImuModel read_model_file(const TomlSection& section, const std::filesystem::path& folder,
                               const std::string& file) {
-  return {file, usable(section, "model", [&] { return read_imu_model(folder / file); })};
+  return {file, usable(section, "model", [&] {
+            require_text_file(folder / file);
+            return read_imu_model(folder / file);
+          })};
 }
 
 void apply_bias(TomlSection& section, ImuErrorModel& model) {

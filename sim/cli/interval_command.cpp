@@ -31,8 +31,11 @@ std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
   std::vector<sim::Scene> scenes = scenes_of(classes);
   SceneChoice as_written = choice;
   as_written.bias.clear();
+  as_written.range.clear();
   sim::Scene own = scene_of(as_written);
-  const auto is_class = [&own](ImuClass c) { return own.imu_name.starts_with(name(c)); };
+  const auto is_class = [&own](ImuClass c) {
+    return own.imu_name.starts_with(std::string(name(c)) + "/");
+  };
   if (std::none_of(kImuClasses.begin(), kImuClasses.end(), is_class)) {
     scenes.push_back(std::move(own));
   }
