@@ -79,9 +79,12 @@ void Ekf::predict(const ImuIncrement& inc) {
   corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
   omega_ib_b_radps_ = inc.dtheta_b_rad / inc.dt_s;
 
+  // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370 km.
+  if (Phi_.dt_s == 0.0) gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
+
   ErrorDynamics dynamics;
   dynamics.dt_s = inc.dt_s;
-  dynamics.gravity_gradient_e = gravity_gradient_e(estimate_.nav.r_e_m);
+  dynamics.gravity_gradient_e = gravity_gradient_e_;
   dynamics.tau_a_s = noise_.tau_a_s;
   dynamics.tau_g_s = noise_.tau_g_s;
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
