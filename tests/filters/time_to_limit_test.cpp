@@ -138,6 +138,40 @@ TEST_CASE("leeway against coasting the same filter: motions, sensors, limits, me
   MESSAGE("worst relative difference from coasting: " << worst);
 }
 
+TEST_CASE(
+    "leeway on the road: what was answered against what then came, bends and stops included") {
+  const sim::Trajectory trajectory = sim::car_drive({.duration_s = 1250.0});
+  const auto truth = sim::true_increments(trajectory, 100.0, 1200.0);
+  for (const ImuErrorModel& imu :
+       {automotive_mems_model(), imu_class_model(ImuClass::kAutomotive, RangeEnd::kMid),
+        imu_class_model(ImuClass::kTactical, RangeEnd::kMid)}) {
+    EkfConfig config;
+    config.imu = imu;
+    const auto log = test::record(trajectory, truth, imu, {}, 1.0, 1.0, 1);
+    const Estimate start = test::truth_estimate(trajectory, 0.0);
+    Ekf filter(config, start, initial_covariance(start, {0.01, 0.02, 0.1, 3.0}, imu));
+    std::vector<double> ratios;
+    for (std::size_t k = 0; k < 110'000; ++k) {
+      filter.predict(log.imu[k]);
+      if (k % 100 == 99) filter.update(log.fixes[k / 100]);
+      if (k < 20'000 || k % 1000 != 550) continue;
+      const auto next = log.imu.begin() + static_cast<std::ptrdiff_t>(k) + 1;
+      const Settled run{filter, {next, std::min(next + 10'000, log.imu.end())}};
+      const double came_s = coast(run, radius(0.95), 10).first_crossing_s(5.0);
+      if (came_s > 0.5) ratios.push_back(time_to_limit(filter, 5.0).time_s / came_s);
+    }
+    std::sort(ratios.begin(), ratios.end());
+    const std::size_t n = ratios.size();
+    MESSAGE("answered / came, " << n << " questions: median " << ratios[n / 2] << ", 5 % "
+                                << ratios[n / 20] << ", 95 % " << ratios[n * 19 / 20]);
+    CHECK(n == 90);
+    // The motion does change: this is what a steady motion is worth as a forecast.
+    CHECK(near(ratios[n / 2], 1.0, 0.03));
+    CHECK(ratios[n / 20] > 0.9);
+    CHECK(ratios[n * 19 / 20] < 1.2);
+  }
+}
+
 TEST_CASE("leeway of milliseconds and of hours") {
   const sim::Trajectory trajectory = sim::static_trajectory({.duration_s = 8000.0});
   SUBCASE("a velocity error alone: t = sqrt((limit / 2.4477)^2 - sigma_r^2) / sigma_v") {
