@@ -17,7 +17,6 @@ namespace {
 using Moment = CovariancePoint::Moment;
 using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then true
 
-constexpr double kLeastWindowS = 480.0;
 constexpr double kSettledRelative = 1e-3;
 
 constexpr std::array<std::string_view, 15> kSourceNames{"initial",
@@ -109,8 +108,7 @@ class Analysis {
         track_(track),
         config_(config),
         pair_(scene, config.by_source),
-        window_s_(std::max({kLeastWindowS, 2.0 * scene.gnss.interval_s,
-                            scene.trajectory.period_s.value_or(0.0)})) {
+        window_s_(scored_part_s(scene)) {
     const GnssErrorModel& gnss = scene.gnss.errors;
     sigma_.head<3>() =
         (gnss.position_sigma_n_m.cwiseAbs2() + gnss.correlated_sigma_n_m.cwiseAbs2()).cwiseSqrt();

@@ -67,8 +67,8 @@ struct CovarianceConfig {
   std::function<void(const CovariancePoint&)> observer{};
 };
 
-/// How a scene ends: the largest error just before a fix over its last part, which is 480 s, two
-/// fix intervals or one period of the trajectory, whichever is longest.
+/// How a scene ends: the largest error just before a fix over its last part,
+/// scored_part_s(scene).
 struct CovarianceAnalysis {
   double claimed_m{};  ///< by the scene's metric
   double true_m{};
