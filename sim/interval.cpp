@@ -94,12 +94,17 @@ class Solver {
     return analyze(scene, track);
   }
 
+  /// Every interval is analysed once, whatever limits ask for it.
+  const CovarianceAnalysis& known(double log_interval) {
+    auto found = known_.find(log_interval);
+    if (found == known_.end()) {
+      found = known_.emplace(log_interval, analysis_at(log_interval, track_)).first;
+    }
+    return found->second;
+  }
+
   Sample sample(double log_interval) {
-    const auto known = samples_.find(log_interval);
-    if (known != samples_.end()) return {known->first, known->second};
-    const double log_error = std::log(analysis_at(log_interval, track_).true_m);
-    samples_.emplace(log_interval, log_error);
-    return {log_interval, log_error};
+    return {log_interval, std::log(known(log_interval).true_m)};
   }
 
   /// Two neighbours with the limit between them, or both the same at an end of what is tried.
@@ -109,11 +114,11 @@ class Solver {
     Sample below = sample(std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_));
     Sample above = below;
     // What other limits have asked for is as good as a new guess.
-    for (const auto& [log_interval, log_error] : samples_) {
-      if (log_error <= log_limit) below = {log_interval, log_error};
+    for (const auto& [log_interval, analysis] : known_) {
+      if (const Sample s = sample(log_interval); s.log_error <= log_limit) below = s;
     }
-    for (auto s = samples_.rbegin(); s != samples_.rend(); ++s) {
-      if (s->second > log_limit && s->first > below.log_interval) above = {s->first, s->second};
+    for (auto later = known_.rbegin(); later->first > below.log_interval; ++later) {
+      if (const Sample s = sample(later->first); s.log_error > log_limit) above = s;
     }
     while (below.log_error > log_limit && below.log_interval > log_shortest) {
       above = below;
@@ -151,11 +156,13 @@ class Solver {
     return below;
   }
 
-  void report(Interval& answer, double log_interval) const {
-    const CovarianceAnalysis analysis = analysis_at(log_interval, track_);
+  void report(Interval& answer, double log_interval) {
+    const CovarianceAnalysis& analysis = known(log_interval);
     answer.true_m = analysis.true_m;
     answer.claimed_m = analysis.claimed_m;
     answer.settled = analysis.settled;
+    // Fixes closer than half a step are the steps.
+    if (std::exp(log_interval) <= 0.5 * config_.covariance_step_s) return;
     const double fine_m = analysis_at(log_interval, fine_track_).true_m;
     answer.step_effect = std::abs(fine_m / analysis.true_m - 1.0);
   }
@@ -165,7 +172,7 @@ class Solver {
   ErrorTrack track_;
   ErrorTrack fine_track_;
   double log_longest_;
-  std::map<double, double> samples_{};  // log(error) by log(interval)
+  std::map<double, CovarianceAnalysis> known_{};  // by log(interval)
 };
 
 }  // namespace
