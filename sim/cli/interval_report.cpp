@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "leeway/sim/bias_model.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
 
