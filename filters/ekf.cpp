@@ -82,9 +82,12 @@ void Ekf::predict(const ImuIncrement& inc) {
   mean_omega_ib_b_radps_ +=
       inc.dt_s / mean_rate_window_s_ * (omega_ib_b_radps_ - mean_omega_ib_b_radps_);
 
+  // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370 km.
+  if (Phi_.dt_s == 0.0) gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
+
   ErrorDynamics dynamics;
   dynamics.dt_s = inc.dt_s;
-  dynamics.gravity_gradient_e = gravity_gradient_e(estimate_.nav.r_e_m);
+  dynamics.gravity_gradient_e = gravity_gradient_e_;
   dynamics.tau_a_s = noise_.tau_a_s;
   dynamics.tau_g_s = noise_.tau_g_s;
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);

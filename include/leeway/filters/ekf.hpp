@@ -100,6 +100,7 @@ class Ekf {
   Estimate estimate_;
   ErrorMatrix P_;
   Transition Phi_{};
+  Eigen::Matrix3d gravity_gradient_e_{Eigen::Matrix3d::Zero()};  // where Phi_ begins
   ImuHistory history_{};
   std::optional<Time> last_position_fix_{};
   Eigen::Vector3d omega_ib_b_radps_{Eigen::Vector3d::Zero()};  // of the newest increment
