@@ -6,7 +6,24 @@
 namespace leeway {
 namespace {
 
-using Rows = Eigen::Matrix<double, 3, kErrorStates>;
+using AttitudeRows = Eigen::Matrix<double, 3, kErrorStates>;
+using MotionRows = Eigen::Matrix<double, 6, kErrorStates>;  // of velocity and position
+
+MotionRows motion_rows(const Transition& Phi) {
+  MotionRows M;
+  M << Phi.v_psi, Phi.v_v, Phi.v_r, Phi.v_a, Phi.v_g,  //
+      Phi.r_psi, Phi.r_v, Phi.r_r, Phi.r_a, Phi.r_g;
+  return M;
+}
+
+/// The sum of the columns with these weights: a product in the order in which six rows are three
+/// pairs, which halves its instructions.
+template <class Weights>
+Eigen::Matrix<double, 6, 1> combined_columns(const MotionRows& m, const Weights& weights) {
+  Eigen::Matrix<double, 6, 1> sum = weights[0] * m.col(0);
+  for (int k = 1; k < kErrorStates; ++k) sum += weights[k] * m.col(k);
+  return sum;
+}
 
 void add_noise(ErrorMatrix& P, const ProcessNoise& noise, double dt_s) {
   P.diagonal().segment<3>(kPsi).array() += noise.attitude_rad2_per_s * dt_s;
@@ -53,42 +70,24 @@ ProcessNoise process_noise(const ImuErrorModel& model) {
 void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise) {
   add_noise(P, noise, 0.5 * Phi.dt_s);
 
-  // W = Phi P, row block by row block; the bias rows only scale.
-  const auto rows = [&P](int i) { return P.middleRows<3>(i); };
-  const Rows W_psi = Phi.psi_psi * rows(kPsi) + Phi.psi_g * rows(kBg);
-  const Rows W_v = Phi.v_psi * rows(kPsi) + Phi.v_v * rows(kDv) + Phi.v_r * rows(kDr) +
-                   Phi.v_a * rows(kBa) + Phi.v_g * rows(kBg);
-  const Rows W_r = Phi.r_psi * rows(kPsi) + Phi.r_v * rows(kDv) + Phi.r_r * rows(kDr) +
-                   Phi.r_a * rows(kBa) + Phi.r_g * rows(kBg);
+  // W = Phi P without the bias rows, which only scale.
+  const AttitudeRows W_psi =
+      Phi.psi_psi * P.middleRows<3>(kPsi) + Phi.psi_g * P.middleRows<3>(kBg);
+  const MotionRows M = motion_rows(Phi);
+  MotionRows W;
+  for (int j = 0; j < kErrorStates; ++j) W.col(j) = combined_columns(M, P.col(j));
 
-  // P = W Phi^T, the upper blocks only.
-  const auto times_psi = [&Phi](const Rows& W) -> Eigen::Matrix3d {
-    return W.middleCols<3>(kPsi) * Phi.psi_psi.transpose() +
-           W.middleCols<3>(kBg) * Phi.psi_g.transpose();
-  };
-  const auto times_v = [&Phi](const Rows& W) -> Eigen::Matrix3d {
-    return W.middleCols<3>(kPsi) * Phi.v_psi.transpose() +
-           W.middleCols<3>(kDv) * Phi.v_v.transpose() + W.middleCols<3>(kDr) * Phi.v_r.transpose() +
-           W.middleCols<3>(kBa) * Phi.v_a.transpose() + W.middleCols<3>(kBg) * Phi.v_g.transpose();
-  };
-  const auto times_r = [&Phi](const Rows& W) -> Eigen::Matrix3d {
-    return W.middleCols<3>(kPsi) * Phi.r_psi.transpose() +
-           W.middleCols<3>(kDv) * Phi.r_v.transpose() + W.middleCols<3>(kDr) * Phi.r_r.transpose() +
-           W.middleCols<3>(kBa) * Phi.r_a.transpose() + W.middleCols<3>(kBg) * Phi.r_g.transpose();
-  };
-  P.block<3, 3>(kPsi, kPsi) = times_psi(W_psi);
-  P.block<3, 3>(kPsi, kDv) = times_v(W_psi);
-  P.block<3, 3>(kPsi, kDr) = times_r(W_psi);
-  P.block<3, 3>(kDv, kDv) = times_v(W_v);
-  P.block<3, 3>(kDv, kDr) = times_r(W_v);
-  P.block<3, 3>(kDr, kDr) = times_r(W_r);
-  const auto set_bias_columns = [&P, &Phi](int row, const Rows& W) {
-    P.block<3, 3>(row, kBa) = Phi.a_a * W.middleCols<3>(kBa);
-    P.block<3, 3>(row, kBg) = Phi.g_g * W.middleCols<3>(kBg);
-  };
-  set_bias_columns(kPsi, W_psi);
-  set_bias_columns(kDv, W_v);
-  set_bias_columns(kDr, W_r);
+  // P = W Phi^T, the upper blocks.
+  P.block<3, 3>(kPsi, kPsi) = W_psi.middleCols<3>(kPsi) * Phi.psi_psi.transpose() +
+                              W_psi.middleCols<3>(kBg) * Phi.psi_g.transpose();
+  for (int i = 0; i < M.rows(); ++i) {
+    P.block<3, 1>(kPsi, kDv + i) = W_psi * M.row(i).transpose();
+    P.block<6, 1>(kDv, kDv + i) = combined_columns(W, M.row(i));
+  }
+  P.block<3, 3>(kPsi, kBa) = Phi.a_a * W_psi.middleCols<3>(kBa);
+  P.block<3, 3>(kPsi, kBg) = Phi.g_g * W_psi.middleCols<3>(kBg);
+  P.block<6, 3>(kDv, kBa) = Phi.a_a * W.middleCols<3>(kBa);
+  P.block<6, 3>(kDv, kBg) = Phi.g_g * W.middleCols<3>(kBg);
   P.block<3, 3>(kBa, kBa) *= Phi.a_a * Phi.a_a;
   P.block<3, 3>(kBa, kBg) *= Phi.a_a * Phi.g_g;
   P.block<3, 3>(kBg, kBg) *= Phi.g_g * Phi.g_g;

@@ -25,16 +25,26 @@ Eigen::Matrix3d cross_columns(const Eigen::Vector3d& v, const Eigen::Matrix3d& m
   return result;
 }
 
+/// The step's own coefficients.
+struct Motion {
+  double half_dt_s;
+  Eigen::Matrix3d gradient_dt_e;  // 1/s
+  double coriolis;                // 2 omega_ie dt
+};
+
 /// Velocity and position rows of one column of blocks, by the midpoint rule.
 /// @param push_v  what attitude and accelerometer error add to the velocity over the step
 void advance_motion(Eigen::Matrix3d& v, Eigen::Matrix3d& r, const Eigen::Matrix3d& push_v,
-                    const ErrorDynamics& step) {
-  const Eigen::Matrix3d r_mid = r + 0.5 * step.dt_s * v;
-  const Eigen::Matrix3d v_mid = v + 0.5 * push_v;
-  const Eigen::Matrix3d dv =
-      push_v + step.dt_s * (step.gravity_gradient_e * r_mid - 2.0 * earth_rate_cross(v_mid));
-  r += step.dt_s * (v + 0.5 * dv);
-  v += dv;
+                    const Motion& step) {
+  const Eigen::Matrix3d r_mid = r + step.half_dt_s * v;
+  const Eigen::Matrix3d v_pushed = v + push_v;
+  // Coriolis by the mean of v before and after the push.
+  const Eigen::RowVector3d turn_x = 0.5 * step.coriolis * (v.row(1) + v_pushed.row(1));
+  const Eigen::RowVector3d turn_y = 0.5 * step.coriolis * (v.row(0) + v_pushed.row(0));
+  v = v_pushed + step.gradient_dt_e.lazyProduct(r_mid);
+  v.row(0) += turn_x;
+  v.row(1) -= turn_y;
+  r = r_mid + step.half_dt_s * v;
 }
 
 double decay(double dt_s, double tau_s) {
@@ -54,17 +64,40 @@ void advance(Transition& Phi, const ErrorDynamics& step) {
   Phi.psi_psi -= dt_s * earth_rate_cross(Phi.psi_psi);
   Phi.psi_g -= dt_s * earth_rate_cross(Phi.psi_g) + 0.5 * (Phi.g_g + g_g_end) * C_dt;
 
-  const Eigen::Vector3d& dv_f = step.dv_f_e_mps;
-  advance_motion(Phi.v_psi, Phi.r_psi, -cross_columns(dv_f, 0.5 * (psi_psi_old + Phi.psi_psi)),
-                 step);
-  advance_motion(Phi.v_g, Phi.r_g, -cross_columns(dv_f, 0.5 * (psi_g_old + Phi.psi_g)), step);
-  advance_motion(Phi.v_a, Phi.r_a, -0.5 * (Phi.a_a + a_a_end) * C_dt, step);
-  advance_motion(Phi.v_v, Phi.r_v, Eigen::Matrix3d::Zero(), step);
-  advance_motion(Phi.v_r, Phi.r_r, Eigen::Matrix3d::Zero(), step);
+  const Motion motion{0.5 * dt_s, dt_s * step.gravity_gradient_e,
+                      2.0 * dt_s * wgs84::kRotationRateRadps};
+  const Eigen::Vector3d half_push = -0.5 * step.dv_f_e_mps;
+  advance_motion(Phi.v_psi, Phi.r_psi, cross_columns(half_push, psi_psi_old + Phi.psi_psi), motion);
+  advance_motion(Phi.v_g, Phi.r_g, cross_columns(half_push, psi_g_old + Phi.psi_g), motion);
+  advance_motion(Phi.v_a, Phi.r_a, -0.5 * (Phi.a_a + a_a_end) * C_dt, motion);
+  advance_motion(Phi.v_v, Phi.r_v, Eigen::Matrix3d::Zero(), motion);
+  advance_motion(Phi.v_r, Phi.r_r, Eigen::Matrix3d::Zero(), motion);
 
   Phi.a_a = a_a_end;
   Phi.g_g = g_g_end;
   Phi.dt_s += dt_s;
+}
+
+Transition compose(const Transition& later, const Transition& earlier) {
+  const Transition& l = later;
+  const Transition& e = earlier;
+  Transition Phi;
+  Phi.dt_s = l.dt_s + e.dt_s;
+  Phi.psi_psi = l.psi_psi * e.psi_psi;
+  Phi.psi_g = l.psi_psi * e.psi_g + l.psi_g * e.g_g;
+  Phi.v_psi = l.v_psi * e.psi_psi + l.v_v * e.v_psi + l.v_r * e.r_psi;
+  Phi.v_v = l.v_v * e.v_v + l.v_r * e.r_v;
+  Phi.v_r = l.v_v * e.v_r + l.v_r * e.r_r;
+  Phi.v_a = l.v_v * e.v_a + l.v_r * e.r_a + l.v_a * e.a_a;
+  Phi.v_g = l.v_psi * e.psi_g + l.v_v * e.v_g + l.v_r * e.r_g + l.v_g * e.g_g;
+  Phi.r_psi = l.r_psi * e.psi_psi + l.r_v * e.v_psi + l.r_r * e.r_psi;
+  Phi.r_v = l.r_v * e.v_v + l.r_r * e.r_v;
+  Phi.r_r = l.r_v * e.v_r + l.r_r * e.r_r;
+  Phi.r_a = l.r_v * e.v_a + l.r_r * e.r_a + l.r_a * e.a_a;
+  Phi.r_g = l.r_psi * e.psi_g + l.r_v * e.v_g + l.r_r * e.r_g + l.r_g * e.g_g;
+  Phi.a_a = l.a_a * e.a_a;
+  Phi.g_g = l.g_g * e.g_g;
+  return Phi;
 }
 
 ErrorMatrix system_matrix(const Eigen::Matrix3d& C_eb, const Eigen::Vector3d& f_e_mps2,

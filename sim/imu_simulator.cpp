@@ -85,8 +85,7 @@ ImuIncrement true_increment(const Trajectory& trajectory, double from_s, double 
   return sum;
 }
 
-std::vector<ImuIncrement> true_increments(const Trajectory& trajectory, double rate_hz,
-                                          double duration_s) {
+std::size_t increment_count(const Trajectory& trajectory, double rate_hz, double duration_s) {
   if (!(rate_hz > 0.0 && rate_hz <= kMaxRateHz)) {
     refuse(trajectory, "rate of " + std::to_string(rate_hz) + " Hz, must be > 0 and <= 1e6");
   }
@@ -95,7 +94,12 @@ std::vector<ImuIncrement> true_increments(const Trajectory& trajectory, double r
                            " s, must be >= 0 and within the trajectory");
   }
   // Rounding must not lose the last increment of a whole number.
-  const auto count = static_cast<std::size_t>(std::floor(duration_s * rate_hz + 1e-6));
+  return static_cast<std::size_t>(std::floor(duration_s * rate_hz + 1e-6));
+}
+
+std::vector<ImuIncrement> true_increments(const Trajectory& trajectory, double rate_hz,
+                                          double duration_s) {
+  const std::size_t count = increment_count(trajectory, rate_hz, duration_s);
   std::vector<ImuIncrement> increments;
   increments.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {

@@ -20,19 +20,24 @@ struct Jobs {
   std::exception_ptr error{};
 };
 
+/// Calls f(argument) without the lock; what it throws becomes the error, if it is the first.
+void call_unlocked(Jobs& jobs, std::unique_lock<std::mutex>& lock,
+                   const std::function<void(std::size_t)>& f, std::size_t argument) {
+  lock.unlock();
+  std::exception_ptr error;
+  try {
+    f(argument);
+  } catch (...) {
+    error = std::current_exception();
+  }
+  lock.lock();
+  if (error && !jobs.error) jobs.error = error;
+}
+
 void work(Jobs& jobs, std::size_t count, const std::function<void(std::size_t)>& job) {
   std::unique_lock lock(jobs.mutex);
   while (jobs.next < count && !jobs.error) {
-    const std::size_t mine = jobs.next++;
-    lock.unlock();
-    std::exception_ptr error;
-    try {
-      job(mine);
-    } catch (...) {
-      error = std::current_exception();
-    }
-    lock.lock();
-    if (error && !jobs.error) jobs.error = error;
+    call_unlocked(jobs, lock, job, jobs.next++);
     ++jobs.finished;
     jobs.changed.notify_one();
   }
@@ -43,13 +48,14 @@ void work(Jobs& jobs, std::size_t count, const std::function<void(std::size_t)>&
 }  // namespace
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& job,
-                  const std::function<void(std::size_t)>& progress) {
-  const std::size_t processors = std::max(1u, std::thread::hardware_concurrency());
+                  const std::function<void(std::size_t)>& progress, int threads) {
+  const std::size_t wanted = threads > 0 ? static_cast<std::size_t>(threads)
+                                         : std::max(1u, std::thread::hardware_concurrency());
   Jobs jobs;
-  jobs.running = std::min(count, processors);
-  std::vector<std::jthread> threads;
+  jobs.running = std::min(count, wanted);
+  std::vector<std::jthread> workers;
   for (std::size_t i = jobs.running; i-- > 0;) {
-    threads.emplace_back([&] { work(jobs, count, job); });
+    workers.emplace_back([&] { work(jobs, count, job); });
   }
   {
     std::unique_lock lock(jobs.mutex);
@@ -58,12 +64,10 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& job
       jobs.changed.wait(lock);
       if (!progress || jobs.finished == reported) continue;
       reported = jobs.finished;
-      lock.unlock();
-      progress(reported);
-      lock.lock();
+      call_unlocked(jobs, lock, progress, reported);
     }
   }
-  threads.clear();
+  workers.clear();
   if (jobs.error) std::rethrow_exception(jobs.error);
 }
 

@@ -10,10 +10,9 @@
 
 namespace leeway::sim {
 
-/// Four times continuously differentiable. The distance of the knots is the bandwidth: motion
-/// slower than a quarter of a period per knot passes (1 % at 0.25 / knot_s), faster than one period
-/// per knot does not. Where samples are missing the curve is the one of the least third
-/// differences.
+/// Four times continuously differentiable. The distance of the knots is the bandwidth: a sine of
+/// up to 0.25 / knot_s Hz passes within 1 %, of one above 1 / knot_s Hz less than 5 % is left. Where
+/// samples are missing the curve is the one of the least third differences.
 class SmoothingSpline {
  public:
   using Samples = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -30,8 +29,6 @@ class SmoothingSpline {
   std::vector<double> knots_s() const;
 
  private:
-  static constexpr int kDegree = 5;
-
   double knot_s_;
   double end_s_;
   Samples coefficients_;

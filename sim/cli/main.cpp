@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "leeway/sim/ranks.hpp"
 
 namespace {
 
@@ -34,6 +35,9 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExitCodes);
   int exit_code = kSuccess;
+  add_interval_command(program, exit_code);
+  add_analyze_command(program, exit_code);
+  add_campaign_command(program, exit_code);
   add_drift_command(program, exit_code);
   add_simulate_command(program, exit_code);
   add_fuse_command(program, exit_code);
@@ -44,7 +48,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     program.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "leeway: {} (see leeway --help, leeway COMMAND --help)\n", error.what());
+    // Under mpirun every rank was given the same wrong words.
+    if (leeway::sim::Ranks::launched_first()) {
+      fmt::print(stderr, "leeway: {} (see leeway --help, leeway COMMAND --help)\n", error.what());
+    }
     return kUnusable;
   }
   if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)

@@ -70,7 +70,7 @@ Progress::~Progress() {
   if (drawn_) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::show(double fraction) {
+void Progress::show(double fraction, std::optional<double> remaining_s) {
   constexpr int kWidth = 40;
   constexpr auto kInterval = std::chrono::milliseconds{100};
   const auto now = Clock::now();
@@ -80,6 +80,10 @@ void Progress::show(double fraction) {
   const double done = std::clamp(fraction, 0.0, 1.0);
   const std::string bar(static_cast<std::size_t>(std::lround(done * kWidth)), '=');
   fmt::print(stderr, "\r{} [{:<{}}] {:3.0f} %", label_, bar, kWidth, 100.0 * done);
+  if (!remaining_s) return;
+  const auto seconds = std::llround(std::clamp(*remaining_s, 0.0, 1e9));
+  fmt::print(stderr, ", {}:{:02}:{:02} to go \033[K", seconds / 3600, seconds / 60 % 60,
+             seconds % 60);
 }
 
 }  // namespace leeway::cli

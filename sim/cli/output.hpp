@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +48,8 @@ class Progress {
 
   /// Whether anybody can see it.
   bool visible() const { return is_terminal_; }
-  void show(double fraction);
+  /// @param remaining_s  shown as the time to go, where it is known
+  void show(double fraction, std::optional<double> remaining_s = {});
 
  private:
   using Clock = std::chrono::steady_clock;

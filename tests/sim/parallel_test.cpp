@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace leeway::sim {
@@ -34,6 +35,29 @@ TEST_CASE("an exception of a job reaches the caller after all threads have stopp
                                     }),
                        "job 7", std::runtime_error);
   CHECK(running == 0);
+}
+
+TEST_CASE("an exception of progress stops the jobs and reaches the caller") {
+  std::atomic<bool> thrown{false};
+  std::atomic<int> calls{0};
+  const auto job = [&](std::size_t k) {
+    while (k == 1 && !thrown) std::this_thread::yield();
+    ++calls;
+  };
+  const auto progress = [&](std::size_t) {
+    thrown = true;
+    throw std::runtime_error("progress");
+  };
+  CHECK_THROWS_WITH_AS(parallel_for(10'000'000, job, progress, 1), "progress", std::runtime_error);
+  CHECK(calls < 10'000'000);
+}
+
+TEST_CASE("one thread runs the jobs in order") {
+  std::vector<std::size_t> order;
+  parallel_for(
+      100, [&](std::size_t k) { order.push_back(k); }, {}, 1);
+  REQUIRE(order.size() == 100);
+  for (std::size_t k = 0; k < order.size(); ++k) CHECK(order[k] == k);
 }
 
 }  // namespace leeway::sim

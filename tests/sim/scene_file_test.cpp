@@ -348,6 +348,13 @@ TEST_CASE("mistakes in a scene are refused with line, column and what was meant"
        "{north_m = 0, east_m = 0}]\n" +
            kImu,
        ":1:1", "to wait at a place use stop_s"},
+      {"[trajectory]\ntype = \"waypoints\"\nwaypoint = [{north_m = 0, east_m = 0, speed_mps = "
+       "0.01}, "
+       "{north_km = 50, east_m = 0}]\n" +
+           kImu,
+       ":1:1", "the motion takes"},
+      {kStill + "[imu]\nmodel = \"/dev/zero\"\n", ":4:9", "cannot be read"},
+      {"[trajectory]\ntype = \"recorded\"\nfile = \"/dev/zero\"\n" + kImu, ":3:8", "is no file"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.text);
@@ -389,7 +396,8 @@ TEST_CASE("a scene that is no file, or too long for one, is refused") {
   CHECK_THROWS_AS(read_scene(dir / "missing.toml"), Error);
   CHECK_THROWS_AS(read_scene(dir / ""), Error);
   const auto path = dir.file("long.toml", std::string(kLongestSceneFile + 1, '\n'));
-  CHECK(contains(test::message_of<Error>([&path] { read_scene(path); }), "no scene file"));
+  CHECK(
+      contains(test::message_of<Error>([&path] { read_scene(path); }), "too long for a TOML file"));
   CHECK_THROWS_AS(parse_scene(std::string(kLongestSceneFile + 1, '\n'), "s"), Error);
 }
 

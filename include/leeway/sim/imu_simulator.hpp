@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "leeway/imu.hpp"
@@ -18,9 +19,12 @@ namespace leeway::sim {
 /// @throws Error unless 0 <= from_s < to_s <= duration of the trajectory, at least 1 ns apart.
 ImuIncrement true_increment(const Trajectory& trajectory, double from_s, double to_s);
 
-/// Consecutive increments ending at k / rate_hz, from 0 to the duration. Compute once and share
-/// among trials.
+/// How many increments end at k / rate_hz within the duration.
 /// @throws Error unless 0 < rate_hz <= 1e6 and 0 <= duration_s <= duration of the trajectory.
+std::size_t increment_count(const Trajectory& trajectory, double rate_hz, double duration_s);
+
+/// Consecutive increments ending at k / rate_hz, from 0 to the duration.
+/// @throws Error as increment_count().
 std::vector<ImuIncrement> true_increments(const Trajectory& trajectory, double rate_hz,
                                           double duration_s);
 

@@ -7,10 +7,11 @@
 
 namespace leeway::sim {
 
-/// Calls job(0) .. job(count - 1), each once, on as many threads as there are processors. The first
-/// exception of a job is thrown again here, after all threads have stopped.
+/// Calls job(0) .. job(count - 1), each once, in ascending order of their start. The first
+/// exception of a job or of progress is thrown again here, after all threads have stopped.
 /// @param progress  called with the number of finished jobs, from the calling thread
+/// @param threads   0: as many as there are processors
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& job,
-                  const std::function<void(std::size_t)>& progress = {});
+                  const std::function<void(std::size_t)>& progress = {}, int threads = 0);
 
 }  // namespace leeway::sim

@@ -1,0 +1,194 @@
+#include "leeway/sim/trial.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "leeway/error.hpp"
+#include "leeway/filters/horizontal.hpp"
+#include "leeway/sim/imu_simulator.hpp"
+#include "leeway/sim/random.hpp"
+#include "leeway/sim/receiver.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kDivergedSigmas = 10.0;
+
+[[noreturn]] void refuse(const std::string& what) { throw Error("Monte Carlo trial: " + what); }
+
+const Scene& checked(const Scene& scene) {
+  validate(scene);
+  std::ostringstream message;
+  if (scene.gnss.interval_s * scene.imu_rate_hz < 1.0 - 1e-9) {
+    message << "gnss interval_s is " << scene.gnss.interval_s << ", must be at least that of the "
+            << "IMU, " << 1.0 / scene.imu_rate_hz << " s: raise imu_rate_hz";
+    refuse(message.str());
+  }
+  if (scene.duration_s < 2.0 * scene.gnss.interval_s) {
+    message << "duration_s is " << scene.duration_s << ", must be at least two GNSS intervals of "
+            << scene.gnss.interval_s << " s";
+    refuse(message.str());
+  }
+  return scene;
+}
+
+/// A start whose error is drawn from P: the estimate e with difference(truth, e) = x, x ~ N(0, P).
+Estimate drawn_start(const Estimate& truth, const ErrorMatrix& P, Random random) {
+  ErrorVector unit;
+  for (int i = 0; i < kErrorStates; ++i) unit(i) = random.normal();
+  const Eigen::LDLT<ErrorMatrix> ldlt(P);
+  const ErrorVector x =
+      ldlt.transpositionsP().transpose() *
+      (ldlt.matrixL() * (ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * unit));
+  Estimate estimate = truth;
+  inject(estimate, -x);
+  return estimate;
+}
+
+/// x^T P^-1 x in units of the sigmas, which differ by 1e9; NaN unless P is positive.
+double normalized_square(const ErrorVector& x, const ErrorMatrix& P) {
+  const ErrorVector per_sigma = P.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<ErrorMatrix> llt(per_sigma.asDiagonal() * P * per_sigma.asDiagonal());
+  if (llt.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+  return llt.matrixL().solve(per_sigma.cwiseProduct(x)).squaredNorm();
+}
+
+Ekf started(const TrialPlan& plan, std::uint64_t seed) {
+  const Scene& scene = plan.scene();
+  const ImuErrorModel& believed = scene.filter.imu;
+  Estimate start;
+  start.nav = truth_at(scene.trajectory, 0.0).nav;
+  start.bias = {believed.accelerometer.bias, believed.gyro.bias};
+  const ErrorMatrix P = initial_covariance(start, plan.initial(), believed);
+  // What the sensors draw beyond the known biases is already the error of the start.
+  ErrorMatrix P_nav = P;
+  P_nav.bottomRightCorner<6, 6>().setZero();
+  return {scene.filter, drawn_start(start, P_nav, Random(seed, 0, kInitialStateStream)), P};
+}
+
+class Trial {
+ public:
+  Trial(const TrialPlan& plan, std::uint64_t seed)
+      : plan_(plan),
+        sensor_(plan.scene().imu, Random(seed, 0, kImuStream)),
+        receiver_(plan.scene().trajectory, plan.scene().gnss, seed),
+        filter_(started(plan, seed)) {
+    score_.seed = seed;
+  }
+
+  TrialScore run();
+
+ private:
+  void take_fix(const TrialPlan::Fix& fix);
+  void score(const Ekf& filter);
+
+  const TrialPlan& plan_;
+  ImuErrorSimulator sensor_;
+  Receiver receiver_;
+  Ekf filter_;
+  std::optional<Ekf> without_fix_{};  // the filter without the scored fix that is on its way
+  std::size_t arrives_{};             // when that fix does
+  TrialScore score_{};
+};
+
+TrialScore Trial::run() {
+  const IncrementTable& truth = plan_.increments();
+  auto next = plan_.fixes().begin();
+  for (std::size_t k = 0; k < truth.size() && score_.finite; ++k) {
+    const ImuIncrement inc = sensor_.measure(truth[k]);
+    filter_.predict(inc);
+    if (without_fix_) {
+      without_fix_->predict(inc);
+      if (k == arrives_) {
+        score(*without_fix_);
+        without_fix_.reset();
+      }
+    }
+    if (next != plan_.fixes().end() && k == next->at) take_fix(*next++);
+  }
+  if (!score_.finite) score_.diverged = true;
+  return score_;
+}
+
+void Trial::take_fix(const TrialPlan::Fix& fix) {
+  if (fix.scored && fix.arrives == fix.at) score(filter_);
+  if (fix.scored && fix.arrives > fix.at) {
+    without_fix_ = filter_;
+    arrives_ = fix.arrives;
+  }
+  const UpdateReport report =
+      filter_.update(receiver_.fix_at(to_seconds(filter_.estimate().nav.time)));
+  if (report.outcome == UpdateReport::Outcome::kGated) ++score_.gated;
+  if (report.outcome == UpdateReport::Outcome::kFused) {
+    ++score_.fused;
+    if (fix.scored) {
+      score_.nis += report.nis;
+      score_.nis_dof += report.dof;
+    }
+  }
+  if (!report.covariance_positive || !filter_.estimate().nav.r_e_m.allFinite()) {
+    score_.finite = false;
+  }
+}
+
+void Trial::score(const Ekf& filter) {
+  Estimate truth;
+  truth.nav = truth_at(plan_.scene().trajectory, to_seconds(filter.estimate().nav.time)).nav;
+  truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
+  const ErrorVector x = difference(truth, filter.estimate());
+  const ErrorMatrix P = filter.covariance();
+  const double nees = normalized_square(x, P);
+  if (!std::isfinite(nees)) {
+    score_.finite = false;
+    return;
+  }
+
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
+  const Eigen::Vector3d error_n_m = C_ne * x.segment<3>(kDr);
+  const Eigen::Matrix3d P_n_m2 = C_ne * P.block<3, 3>(kDr, kDr) * C_ne.transpose();
+  const Eigen::Vector2d error_ne_m = error_n_m.head<2>();
+  const Eigen::Matrix2d P_ne_m2 = P_n_m2.topLeftCorner<2, 2>();
+  ++score_.epochs;
+  score_.error_sq_n_m2 += error_n_m.cwiseAbs2();
+  score_.variance_n_m2 += P_n_m2.diagonal();
+  score_.nees += nees;
+  if (error_ne_m.norm() > horizontal_radius_m(P_ne_m2, 0.95)) ++score_.beyond_r95;
+  const double distance_sq = error_ne_m.dot(P_ne_m2.inverse() * error_ne_m);
+  if (distance_sq > kDivergedSigmas * kDivergedSigmas) score_.diverged = true;
+  score_.largest_horizontal_m = std::max(score_.largest_horizontal_m, error_ne_m.norm());
+}
+
+}  // namespace
+
+TrialPlan::TrialPlan(const Scene& scene, std::optional<double> score_last_s, int threads)
+    : scene_(checked(scene)),
+      increments_(scene.trajectory, scene.imu_rate_hz, scene.duration_s, threads),
+      initial_(initial_sigma(scene)) {
+  const double last_s = score_last_s.value_or(scored_part_s(scene));
+  const auto epoch = [&](double t_s) {
+    return static_cast<std::size_t>(std::llround(t_s * scene.imu_rate_hz)) - 1;
+  };
+  std::size_t scored = 0;
+  std::size_t last_arrives = 0;  // of the scored ones
+  for (const double t_s : fix_times_s(scene.gnss, scene.duration_s)) {
+    Fix fix{epoch(t_s), epoch(t_s + scene.gnss.latency_s), false};
+    fix.scored = t_s + scene.gnss.latency_s > scene.duration_s - last_s - 0.5 / scene.imu_rate_hz &&
+                 fix.arrives < increments_.size() && (scored == 0 || fix.at >= last_arrives);
+    if (fix.scored) last_arrives = fix.arrives;
+    if (fix.scored) ++scored;
+    fixes_.push_back(fix);
+  }
+  if (scored == 0) {
+    refuse("no fix to score in the last " + std::to_string(last_s) + " s of the scene '" +
+           scene.name + "': lengthen duration_s, or shorten the outages or the latency");
+  }
+}
+
+TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed) { return Trial(plan, seed).run(); }
+
+}  // namespace leeway::sim
