@@ -17,7 +17,6 @@ namespace {
 using Moment = CovariancePoint::Moment;
 using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then true
 
-constexpr double kLeastWindowS = 480.0;
 constexpr double kSettledRelative = 1e-3;
 
 constexpr std::array<std::string_view, 15> kSourceNames{"initial",
@@ -109,8 +108,7 @@ class Analysis {
         track_(track),
         config_(config),
         pair_(scene, config.by_source),
-        window_s_(std::max({kLeastWindowS, 2.0 * scene.gnss.interval_s,
-                            scene.trajectory.period_s.value_or(0.0)})) {
+        window_s_(scored_part_s(scene)) {
     const GnssErrorModel& gnss = scene.gnss.errors;
     sigma_.head<3>() =
         (gnss.position_sigma_n_m.cwiseAbs2() + gnss.correlated_sigma_n_m.cwiseAbs2()).cwiseSqrt();
@@ -119,12 +117,11 @@ class Analysis {
   }
 
   CovarianceAnalysis run() {
-    const bool may_stop = scene_.trajectory.period_s && scene_.gnss.outages.empty();
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
       const double arrival_s = t_s + scene_.gnss.latency_s;
       if (arrival_s > scene_.duration_s) break;
       now_s_ = advance(pair_, now_s_, t_s);
-      if (enter_window(arrival_s) && may_stop) break;
+      enter_window(arrival_s);
       score(arrival_s);
       update();
     }
@@ -183,20 +180,17 @@ class Analysis {
     if (config_.by_source) r.budget = pair.budget(C_en);
   }
 
-  /// @returns whether a window has ended that repeats the one before it.
-  bool enter_window(double t_s) {
+  void enter_window(double t_s) {
     // A fix on the border of two counts for the later one.
     const double windows_left = (scene_.duration_s - t_s) / window_s_;
     const auto index = std::max(0L, static_cast<long>(std::ceil(windows_left - 1e-9)) - 1);
-    if (index == window_.index) return false;
+    if (index == window_.index) return;
     if (window_.index >= 0) {
       compare_with_previous();
-      if (settled_s_) return true;
       previous_ = window_.largest;
     }
     window_ = Window{};
     window_.index = index;
-    return false;
   }
 
   void compare_with_previous() {
@@ -209,7 +203,7 @@ class Analysis {
   }
 
   CovarianceAnalysis finished() {
-    if (window_.index != 0 && !settled_s_) {
+    if (window_.index != 0) {
       throw Error("scene '" + scene_.name + "': no fix in its last " + std::to_string(window_s_) +
                   " s: shorten the fix interval or move the outages");
     }

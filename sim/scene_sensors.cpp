@@ -37,6 +37,7 @@ constexpr Quantity kTilt{"tilt", kAngles, zero_or(1e-7, 30.0 * kRadPerDeg)};
 constexpr Quantity kHeading{"heading", kAngles, zero_or(1e-7, 180.0 * kRadPerDeg)};
 constexpr Quantity kInitialVelocity{"velocity", kSpeeds, zero_or(1e-4, 100.0)};
 constexpr Quantity kInitialPosition{"position", kLengths, zero_or(1e-3, 1e5)};
+constexpr Quantity kLast{"last", kTimes, between(1.0, kLongestSceneS)};
 constexpr Quantity kLimit{"limit", kLengths, between(1e-2, 1e5)};
 
 /// A sigma of position: horizontal and vertical, or one for each axis.
@@ -240,6 +241,7 @@ HorizontalBudget read_budget(TomlSection& section) {
   HorizontalBudget budget;
   budget.metric = chosen(section, "metric", kHorizontalMetrics).value_or(budget.metric);
   set(section, kLimit, budget.limit_m);
+  set(section, kLast, budget.last_s);
   return budget;
 }
 

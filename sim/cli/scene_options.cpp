@@ -137,6 +137,7 @@ Json scene_json(const sim::Scene& scene) {
           {"gate_probability", scene.filter.gate_probability},
           {"metric", name(scene.budget.metric)},
           {"limit_m", scene.budget.limit_m},
+          {"last_s", scene.budget.last_s},
           {"trials", scene.trials},
           {"first_seed", scene.first_seed}};
 }

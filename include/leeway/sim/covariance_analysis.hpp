@@ -67,8 +67,8 @@ struct CovarianceConfig {
   std::function<void(const CovariancePoint&)> observer{};
 };
 
-/// How a scene ends: the largest error just before a fix over its last part, which is 480 s, two
-/// fix intervals or one period of the trajectory, whichever is longest.
+/// How a scene ends: the largest error just before a fix over its last part,
+/// scored_part_s(scene).
 struct CovarianceAnalysis {
   double claimed_m{};  ///< by the scene's metric
   double true_m{};
@@ -87,9 +87,10 @@ struct CovarianceAnalysis {
 /// @param step_s  the longest step of the covariance; shortened to resolve the sensors' drift
 ErrorTrack error_track(const Scene& scene, double step_s = 1.0);
 
-/// Fixes act at their own times; with latency the error that counts is that at their arrival. A
-/// settled scene whose trajectory repeats and that has no outages is not followed to its end.
-/// Outliers and the filter's gate are left out, being no linear errors.
+/// Fixes act at their own times; with latency the error that counts is that at their arrival. The
+/// scene is followed to its end also when it has settled: what repeats to 0.1 % from one part to
+/// the next may still creep by more over a day. Outliers and the filter's gate are left out, being
+/// no linear errors.
 /// @param track  error_track() of this scene
 /// @throws Error when the scene is invalid, or no fix falls into the last part.
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
