@@ -11,8 +11,8 @@
 namespace leeway::sim {
 
 /// Four times continuously differentiable. The distance of the knots is the bandwidth: a sine of
-/// up to 0.25 / knot_s Hz passes within 1 %, of one above 1 / knot_s Hz less than 5 % is left. Where
-/// samples are missing the curve is the one of the least third differences.
+/// up to 0.25 / knot_s Hz passes within 1 %, of one above 1 / knot_s Hz less than 5 % is left.
+/// Where samples are missing the curve is the one of the least third differences.
 class SmoothingSpline {
  public:
   using Samples = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

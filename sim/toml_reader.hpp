@@ -137,6 +137,7 @@ class TomlSection {
   };
 
   const toml::node* declare(std::string_view key);
+  bool is_declared(std::string_view key) const;
   [[noreturn]] void fail_missing() const;
   [[noreturn]] void fail_unknown(const toml::key& key) const;
   std::vector<std::string_view> keys() const;
