@@ -8,11 +8,8 @@
 
 namespace leeway::sim {
 
-inline constexpr Unit kMs = units::step("ms", "ms", 1.0, 1000.0, units::kS);
-inline constexpr Unit kCm = units::step("cm", "cm", 1.0, 100.0, units::kM);
-
-inline constexpr std::array<const Unit*, 4> kTimes{&units::kS, &kMs, &units::kMin, &units::kH};
-inline constexpr std::array<const Unit*, 4> kLengths{&units::kM, &kCm, &units::kKm};
+inline constexpr std::array<const Unit*, 4> kTimes{&units::kS, &units::kMs, &units::kMin, &units::kH};
+inline constexpr std::array<const Unit*, 4> kLengths{&units::kM, &units::kCm, &units::kKm};
 inline constexpr std::array<const Unit*, 4> kSpeeds{&units::kMps, &units::kKmPerH};
 inline constexpr std::array<const Unit*, 4> kAngles{&units::kDeg, &units::kMrad};
 inline constexpr std::array<const Unit*, 4> kAccelerations{&units::kMps2, &units::kStandardG};

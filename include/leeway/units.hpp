@@ -41,10 +41,12 @@ constexpr Unit step(std::string_view symbol, std::string_view key, double times,
 inline constexpr double kG = kStandardGravityMps2;
 
 inline constexpr Unit kS = in_si("s", "s");
+inline constexpr Unit kMs = step("ms", "ms", 1.0, 1000.0, kS);
 inline constexpr Unit kMin = step("min", "min", 60.0, 1.0, kS);
 inline constexpr Unit kH = step("h", "h", 3600.0, 1.0, kS);
 inline constexpr Unit kHz = in_si("Hz", "hz");
 inline constexpr Unit kM = in_si("m", "m");
+inline constexpr Unit kCm = step("cm", "cm", 1.0, 100.0, kM);
 inline constexpr Unit kKm = step("km", "km", 1000.0, 1.0, kM);
 inline constexpr Unit kMps = in_si("m/s", "mps");
 inline constexpr Unit kKmPerH = step("km/h", "km_per_h", 1.0, 3.6, kMps);
@@ -91,10 +93,12 @@ inline constexpr Unit kDegPerSPerG =
 inline constexpr Unit kDegPerHPerG = step("deg/h/g", "deg_per_h_per_g", 1.0, 3600.0, kDegPerSPerG);
 
 inline constexpr std::array kAll{kS,
+                                 kMs,
                                  kMin,
                                  kH,
                                  kHz,
                                  kM,
+                                 kCm,
                                  kKm,
                                  kMps,
                                  kKmPerH,

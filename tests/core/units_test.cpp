@@ -30,10 +30,12 @@ TEST_CASE("units: every factor against its exact value") {
     const char* si_symbol;
   } cases[] = {
       {"s", 1.0, "s"},
+      {"ms", 0.001, "s"},
       {"min", 60.0, "s"},
       {"h", 3600.0, "s"},
       {"Hz", 1.0, "Hz"},
       {"m", 1.0, "m"},
+      {"cm", 0.01, "m"},
       {"km", 1000.0, "m"},
       {"m/s", 1.0, "m/s"},
       {"km/h", 0.27777777777777778, "m/s"},
