@@ -71,8 +71,7 @@ void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise)
   add_noise(P, noise, 0.5 * Phi.dt_s);
 
   // W = Phi P without the bias rows, which only scale.
-  const AttitudeRows W_psi =
-      Phi.psi_psi * P.middleRows<3>(kPsi) + Phi.psi_g * P.middleRows<3>(kBg);
+  const AttitudeRows W_psi = Phi.psi_psi * P.middleRows<3>(kPsi) + Phi.psi_g * P.middleRows<3>(kBg);
   const MotionRows M = motion_rows(Phi);
   MotionRows W;
   for (int j = 0; j < kErrorStates; ++j) W.col(j) = combined_columns(M, P.col(j));

@@ -77,26 +77,25 @@ void Ekf::predict(const ImuIncrement& inc) {
   ImuIncrement corrected = inc;
   corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
   corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
-  omega_ib_b_radps_ = inc.dtheta_b_rad / inc.dt_s;
+  omega_ib_b_radps_ = 1.0 / inc.dt_s * inc.dtheta_b_rad;
   mean_rate_window_s_ = std::max(std::min(mean_rate_window_s_ + inc.dt_s, kMeanRateS), inc.dt_s);
   mean_omega_ib_b_radps_ +=
       inc.dt_s / mean_rate_window_s_ * (omega_ib_b_radps_ - mean_omega_ib_b_radps_);
 
-  // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370 km.
+  // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370
+  // km.
   if (Phi_.dt_s == 0.0) gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
 
-  ErrorDynamics dynamics;
-  dynamics.dt_s = inc.dt_s;
-  dynamics.gravity_gradient_e = gravity_gradient_e_;
-  dynamics.tau_a_s = noise_.tau_a_s;
-  dynamics.tau_g_s = noise_.tau_g_s;
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
-  dynamics.C_eb_mean = step.C_eb_mean;
-  dynamics.dv_f_e_mps = step.dv_f_e_mps;
 
   const double a_a = Phi_.a_a;
   const double g_g = Phi_.g_g;
-  advance(Phi_, dynamics);
+  advance(Phi_, {.dt_s = inc.dt_s,
+                 .C_eb_mean = step.C_eb_mean,
+                 .dv_f_e_mps = step.dv_f_e_mps,
+                 .gravity_gradient_e = gravity_gradient_e_,
+                 .tau_a_s = noise_.tau_a_s,
+                 .tau_g_s = noise_.tau_g_s});
   estimate_.bias.b_a_mps2 *= Phi_.a_a / a_a;
   estimate_.bias.b_g_radps *= Phi_.g_g / g_g;
   // Half an increment of slack, so that rounding does not shift the moment.

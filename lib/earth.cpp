@@ -143,17 +143,49 @@ Eigen::Vector3d centrifugal_e(const Eigen::Vector3d& r_e_m) {
   return {kOmega * kOmega * r_e_m.x(), kOmega * kOmega * r_e_m.y(), 0.0};
 }
 
+/// The two sums of gravity at once, their coefficients side by side for instructions that work on
+/// pairs. Every power of s^2 is its own chain of operations, and the short chains are added first:
+/// the time is that of the longest one. The first term, by far the largest, is added last.
+template <int degree>
+struct GravitySums {
+  static constexpr std::size_t kTerms = ZonalSum<degree>::kTerms;
+  std::array<std::array<std::array<double, 2>, kTerms>, kTerms> c{};
+
+  constexpr GravitySums() {
+    const ZonalSum<degree> equatorial = equatorial_sum<degree>();
+    const ZonalSum<degree> axial = axial_sum<degree>();
+    for (std::size_t term = 0; term < kTerms; ++term) {
+      for (std::size_t i = 0; i <= term; ++i)
+        c[term][i] = {equatorial.c[term][i], axial.c[term][i]};
+    }
+  }
+
+  /// Equatorial, axial.
+  Eigen::Array2d operator()(double a_over_r_sq, double s_sq) const {
+    const auto coefficients = [this](std::size_t term, std::size_t i) {
+      return Eigen::Map<const Eigen::Array2d>(c[term][i].data());
+    };
+    Eigen::Array2d sum = Eigen::Array2d::Zero();
+    double power = a_over_r_sq;
+    for (std::size_t term = 1; term < kTerms; ++term) {
+      Eigen::Array2d p = coefficients(term, term);
+      for (std::size_t i = term; i-- > 0;) p = p * s_sq + coefficients(term, i);
+      sum += power * p;
+      power *= a_over_r_sq;
+    }
+    return coefficients(0, 0) + sum;
+  }
+};
+
 template <int degree>
 Eigen::Vector3d zonal_gravity_e(const Eigen::Vector3d& r_e_m) {
-  static constexpr auto kEquatorial = equatorial_sum<degree>();
-  static constexpr auto kAxial = axial_sum<degree>();
+  static constexpr GravitySums<degree> kSums;
   const double inv_r_sq = 1.0 / r_e_m.squaredNorm();
   const double q = wgs84::kSemiMajorAxisM * wgs84::kSemiMajorAxisM * inv_r_sq;
   const double s_sq = r_e_m.z() * r_e_m.z() * inv_r_sq;
   const double gm_over_r3 = wgs84::kGmM3PerS2 * inv_r_sq * std::sqrt(inv_r_sq);
-  const double equatorial = -gm_over_r3 * kEquatorial(q, s_sq);
-  const double axial = -gm_over_r3 * kAxial(q, s_sq);
-  return Eigen::Vector3d(equatorial * r_e_m.x(), equatorial * r_e_m.y(), axial * r_e_m.z()) +
+  const Eigen::Array2d factors = -gm_over_r3 * kSums(q, s_sq);
+  return Eigen::Vector3d(factors[0] * r_e_m.x(), factors[0] * r_e_m.y(), factors[1] * r_e_m.z()) +
          centrifugal_e(r_e_m);
 }
 

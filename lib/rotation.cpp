@@ -13,9 +13,11 @@ constexpr double kGimbalRad = 1e-8;
 // theta^6 / 5040 = 2e-16 relative at 0.01 rad.
 constexpr double kSmallAngleSq = 1e-4;
 
+// Factors of a series are multiplied by, known when compiled: a division takes as long as four
+// multiplications, and a strapdown step would have twenty of them.
 double sinc(double theta_sq) {
   if (theta_sq < kSmallAngleSq) {
-    return 1.0 - theta_sq / 6.0 * (1.0 - theta_sq / 20.0);
+    return 1.0 - 1.0 / 6.0 * theta_sq * (1.0 - 1.0 / 20.0 * theta_sq);
   }
   const double theta = std::sqrt(theta_sq);
   return std::sin(theta) / theta;
@@ -32,9 +34,9 @@ double sine_deficit_ratio(double theta_sq) {
   if (theta_sq < 0.25) {
     double sum = 0.0;
     for (double n : {14.0, 12.0, 10.0, 8.0, 6.0, 4.0}) {
-      sum = theta_sq / (n * (n + 1.0)) * (1.0 - sum);
+      sum = 1.0 / (n * (n + 1.0)) * theta_sq * (1.0 - sum);
     }
-    return (1.0 - sum) / 6.0;
+    return 1.0 / 6.0 * (1.0 - sum);
   }
   return (1.0 - sinc(theta_sq)) / theta_sq;
 }

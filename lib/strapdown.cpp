@@ -31,8 +31,7 @@ PairTerms pair_terms(const ImuIncrement& inc, const ImuIncrement& last) {
 /// Position change beyond the trapezoid when the acceleration is linear through two increments.
 Eigen::Vector3d curvature_e_m(const Eigen::Vector3d& dv_e_mps, double dt_s,
                               const Eigen::Vector3d& last_dv_e_mps, double last_dt_s) {
-  return -dt_s * dt_s * dt_s / (6.0 * (dt_s + last_dt_s)) *
-         (dv_e_mps / dt_s - last_dv_e_mps / last_dt_s);
+  return -dt_s * dt_s / (6.0 * (dt_s + last_dt_s)) * (dv_e_mps - dt_s / last_dt_s * last_dv_e_mps);
 }
 
 /// [seed (3)-(8)]; the semi-implicit variant takes the position from the new velocity.

@@ -121,12 +121,14 @@ TriadErrorSimulator::TriadErrorSimulator(const TriadErrorModel& model, Random& r
   }
 }
 
-Eigen::Vector3d TriadErrorSimulator::integrate_in_run_bias(double dt_s, Random& random) {
+void TriadErrorSimulator::set_step(double dt_s) {
+  step_dt_s_ = dt_s;
+  noise_sigma_ = model_.noise_density * std::sqrt(dt_s);
+  in_run_step_ = discretize(model_.in_run, dt_s);
+}
+
+Eigen::Vector3d TriadErrorSimulator::integrate_in_run_bias(Random& random) {
   if (model_.in_run.sigma == 0.0) return Eigen::Vector3d::Zero();
-  if (dt_s != in_run_step_dt_s_) {
-    in_run_step_ = discretize(model_.in_run, dt_s);
-    in_run_step_dt_s_ = dt_s;
-  }
   Eigen::Vector3d integral = in_run_step_.integral_gain_s * in_run_bias_;
   if (in_run_step_.sigma_end == 0.0) return integral;  // a random constant
   const Eigen::Vector3d w1 = in_run_step_.sigma_end * random.normal3();
@@ -147,11 +149,10 @@ Eigen::Vector3d TriadErrorSimulator::quantize(const Eigen::Vector3d& increment_b
 Eigen::Vector3d TriadErrorSimulator::measure(const Eigen::Vector3d& true_b,
                                              const Eigen::Vector3d& cross_b, double dt_s,
                                              Random& random) {
+  if (dt_s != step_dt_s_) set_step(dt_s);
   Eigen::Vector3d sensed = model_.M * true_b + cross_b + constant_bias_ * dt_s;
-  sensed += integrate_in_run_bias(dt_s, random);
-  if (model_.noise_density > 0.0) {
-    sensed += model_.noise_density * std::sqrt(dt_s) * random.normal3();
-  }
+  sensed += integrate_in_run_bias(random);
+  if (noise_sigma_ > 0.0) sensed += noise_sigma_ * random.normal3();
   const double limit = model_.range * dt_s;
   return quantize(sensed.cwiseMax(-limit).cwiseMin(limit));
 }

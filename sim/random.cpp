@@ -24,8 +24,8 @@ struct CosSin {
   double sin;
 };
 
-/// Of a whole turn times u, 0 <= u <= 1: error below 3e-16. Quarter turns are taken off exactly, the
-/// Taylor series of what is left, at most pi / 4, end below 1e-17; no branch depends on u.
+/// Of a whole turn times u, 0 <= u <= 1: error below 3e-16. Quarter turns are taken off exactly,
+/// the Taylor series of what is left, at most pi / 4, end below 1e-17; no branch depends on u.
 CosSin cos_sin_of_turn(double u) {
   const auto quarters = static_cast<std::size_t>(4.0 * u + 0.5);
   const double x = 2.0 * std::numbers::pi * (u - 0.25 * static_cast<double>(quarters));

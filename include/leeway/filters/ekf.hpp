@@ -30,8 +30,8 @@ struct EkfConfig {
   /// A fix is refused when a right one would look as bad with less than this probability. 0: no
   /// gate.
   double gate_probability{1e-6};
-  /// P is propagated when this much time has accumulated in Phi, and before every update. 0: at
-  /// every increment.
+  /// P is propagated when this much time has accumulated in Phi, and before every update; the
+  /// gravity gradient is that of the place where Phi begins. 0: at every increment.
   double covariance_interval_s{0.1};
 };
 

@@ -40,15 +40,17 @@ class TriadErrorSimulator {
   Eigen::Vector3d bias() const { return constant_bias_ + in_run_bias_; }
 
  private:
-  Eigen::Vector3d integrate_in_run_bias(double dt_s, Random& random);
+  void set_step(double dt_s);
+  Eigen::Vector3d integrate_in_run_bias(Random& random);
   Eigen::Vector3d quantize(const Eigen::Vector3d& increment_b);
 
   TriadErrorModel model_;
   Eigen::Vector3d constant_bias_;
   Eigen::Vector3d in_run_bias_;
   Eigen::Vector3d residue_{Eigen::Vector3d::Zero()};  // below the quantum, not yet reported
+  double step_dt_s_{0.0};                             // the dt that the next two are for
+  double noise_sigma_{0.0};
   GaussMarkovStep in_run_step_{};
-  double in_run_step_dt_s_{0.0};  // the dt that in_run_step_ is for
 };
 
 /// Applies [seed (1)-(2)] and the optional errors of ImuErrorModel to true increments. In order:

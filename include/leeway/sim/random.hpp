@@ -24,7 +24,7 @@ enum RandomStream : std::uint32_t {
 };
 
 /// One stream of random numbers. Uniform numbers are the same on every machine; normal ones are up
-/// to the rounding of the mathematical library's log, sin and cos. Never repeats within 2^64 draws.
+/// to the rounding of the mathematical library's log. Never repeats within 2^64 draws.
 class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint32_t trial = 0, std::uint32_t stream = 0)
