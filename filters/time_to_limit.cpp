@@ -84,14 +84,15 @@ double Outlook::rough_time_s() const {
       std::max(limit_sq_m2 / 3.0 - after(Coasting{}, 0.0).trace(), limit_sq_m2 / 100.0);
   const double by_t4 = (g * g * variance(kPsi) + variance(kBa)) / 4.0;
   const double by_t5 = (g * g * q.attitude_rad2_per_s + q.b_a_m2_per_s5) / 20.0;
-  double t = std::ldexp(1.0, -14);
-  for (; t < kLeewayHorizonS; t *= 2.0) {
+  const auto growth_m2 = [&](double t) {
     const double by_t2 = variance(kDv) + t * q.velocity_m2_per_s3 / 3.0;
     const double by_t6 = g * g * (variance(kBg) + t * q.b_g_rad2_per_s3 / 7.0) / 36.0;
     const double t2 = t * t;
-    if (t2 * (by_t2 + t2 * (by_t4 + t * by_t5 + t2 * by_t6)) > room_m2) break;
-  }
-  return t;
+    return t2 * (by_t2 + t2 * (by_t4 + t * by_t5 + t2 * by_t6));
+  };
+  double t_s = std::ldexp(1.0, -14);
+  while (t_s < kLeewayHorizonS && growth_m2(t_s) <= room_m2) t_s *= 2.0;
+  return t_s;
 }
 
 /// Short against the answer and the motion; a turn, where there is one, is a power of two of it, so

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include "filters/recording.hpp"
 #include "leeway/filters/ekf.hpp"
+#include "leeway/filters/horizontal.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 
 namespace leeway::test {
@@ -46,6 +50,50 @@ inline Settled settled(const sim::Trajectory& trajectory, const ImuErrorModel& i
     filter.update(fix);
   }
   return {filter, ahead};
+}
+
+using Metric = std::function<double(const Eigen::Matrix2d&)>;
+
+inline Metric radius(double probability) {
+  return [=](const Eigen::Matrix2d& P) { return horizontal_radius_m(P, probability); };
+}
+
+inline Metric metric(HorizontalMetric which) {
+  return [=](const Eigen::Matrix2d& P) { return horizontal_error_m(which, P); };
+}
+
+inline double present(const Ekf& filter, const Metric& size) {
+  return size(horizontal_covariance(filter.estimate().nav.r_e_m,
+                                    filter.covariance().block<3, 3>(kDr, kDr)));
+}
+
+/// How large the error is while the filter coasts over the increments ahead, and when.
+struct Coast {
+  std::vector<double> t_s;
+  std::vector<double> size_m;
+
+  /// The first time above the limit, between samples as of a power of time; NaN if never.
+  double first_crossing_s(double limit_m) const {
+    for (std::size_t k = 1; k < t_s.size(); ++k) {
+      if (!(size_m[k] > limit_m)) continue;
+      const double part = std::log(limit_m / size_m[k - 1]) / std::log(size_m[k] / size_m[k - 1]);
+      return t_s[k - 1] + part * (t_s[k] - t_s[k - 1]);
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+inline Coast coast(const Settled& run, const Metric& size, std::size_t every = 1) {
+  Ekf filter = run.filter;
+  const double start_s = to_seconds(filter.estimate().nav.time);
+  Coast result{{0.0}, {present(filter, size)}};
+  for (std::size_t k = 0; k < run.ahead.size(); ++k) {
+    filter.predict(run.ahead[k]);
+    if ((k + 1) % every != 0) continue;
+    result.t_s.push_back(to_seconds(run.ahead[k].time) - start_s);
+    result.size_m.push_back(present(filter, size));
+  }
+  return result;
 }
 
 }  // namespace leeway::test

@@ -22,7 +22,7 @@ inline constexpr std::array kHorizontalMetrics{HorizontalMetric::kDrms, Horizont
 std::string_view name(HorizontalMetric metric);
 
 /// @throws Error listing the known names.
-HorizontalMetric horizontal_metric_from_name(std::string_view name);
+HorizontalMetric horizontal_metric_from_name(std::string_view wanted);
 
 /// North-east covariance (m^2) of the position error at r_e_m.
 /// @param P_rr_e_m2  covariance of dr_e in ECEF axes
