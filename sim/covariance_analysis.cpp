@@ -161,6 +161,7 @@ class Analysis {
     Variances variances;
     variances << before.claimed.diagonal(), before.truth.diagonal();
     window_.largest = window_.largest.max(variances);
+    if (window_.index > 0) return;
     const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(before.r_e_m));
     const auto horizontal = [&](const ErrorMatrix& P) -> Eigen::Matrix2d {
       return C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>();

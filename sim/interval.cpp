@@ -12,7 +12,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kFirstGuessS = 10.0;
-constexpr double kBracketFactor = 3.0;
+constexpr double kBracketFactor = 10.0;
 constexpr int kMostSecants = 60;
 
 void validate(const Scene& scene, const std::vector<double>& limits_m,

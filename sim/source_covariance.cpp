@@ -9,74 +9,66 @@ double decay(double dt_s, double tau_s) {
   return std::isinf(tau_s) ? 1.0 : std::exp(-dt_s / tau_s);
 }
 
-/// (I - K h) P (I - K h)^T, plus what is given for the innovation's variance beyond h P h^T.
-void apply_gain(ErrorMatrix& P, const ErrorVector& K, const ErrorVector& cross,
-                double innovation_variance) {
-  P.noalias() -= K * cross.transpose();
-  P.noalias() -= cross * K.transpose();
-  P.noalias() += innovation_variance * K * K.transpose();
-}
-
 }  // namespace
 
-void WhiteSource::propagate(const Leg& leg) { leeway::propagate(P, leg.Phi, noise); }
-
-void WhiteSource::update(const ScalarGain& gain) {
-  const ErrorVector cross = P * gain.h;
-  const double noise_variance = fix_variance(gain.axis) * gain.per_sigma * gain.per_sigma;
-  apply_gain(P, gain.K, cross, gain.h.dot(cross) + noise_variance);
-}
-
-MarkovSource::MarkovSource(int enters_at, const Start& start, const GaussMarkov& process,
-                           double filter_tau_s)
-    : enters_at_(enters_at), process_(process), filter_tau_s_(filter_tau_s) {
+void SourceCovariance::add_process(MarkovSource source, const MarkovStart& start) {
   const Eigen::Matrix3d variance = start.variance.asDiagonal();
-  G_ = variance + start.mean * start.mean.transpose();
-  if (enters_at_ == kFixes) return;
-  const Eigen::Vector3d error = start.mean - start.known;
-  P_.block<3, 3>(enters_at_, enters_at_) = variance + error * error.transpose();
-  S_.middleRows<3>(enters_at_) = variance + error * start.mean.transpose();
+  source.G = variance + start.mean * start.mean.transpose();
+  if (source.enters_at != MarkovSource::kFixes) {
+    const Eigen::Vector3d error = start.mean - start.known;
+    P.block<3, 3>(source.enters_at, source.enters_at) += variance + error * error.transpose();
+    source.S.middleRows<3>(source.enters_at) = variance + error * start.mean.transpose();
+  }
+  processes_.push_back(source);
 }
 
-void MarkovSource::propagate(const Leg& leg) {
+void SourceCovariance::propagate(const Leg& leg) {
   // Half before and half after, as propagate() does with noise: second order in the step.
-  step_process(0.5 * leg.Phi.dt_s);
-  leeway::propagate(P_, leg.Phi, {});
-  S_ = times<3>(leg.Phi, S_);
-  step_process(0.5 * leg.Phi.dt_s);
+  for (MarkovSource& source : processes_) step_process(source, 0.5 * leg.Phi.dt_s);
+  leeway::propagate(P, leg.Phi, noise);
+  for (MarkovSource& source : processes_) {
+    source.S = times<3>(leg.Phi, source.S);
+    step_process(source, 0.5 * leg.Phi.dt_s);
+  }
 }
 
 /// g' = phi g + w; a bias state that the filter lets decay by its own phi gains delta g + w on the
 /// filter's idea of it.
-void MarkovSource::step_process(double dt_s) {
-  const double phi = decay(dt_s, process_.tau_s);
-  if (enters_at_ == kFixes) {
-    S_ *= phi;
+void SourceCovariance::step_process(MarkovSource& source, double dt_s) {
+  const double phi = decay(dt_s, source.process.tau_s);
+  const int at = source.enters_at;
+  if (at == MarkovSource::kFixes) {
+    source.S *= phi;
     return;
   }
-  const double delta = phi - decay(dt_s, filter_tau_s_);
-  const Eigen::Matrix3d Q =
-      process_.sigma * process_.sigma * (1.0 - phi * phi) * Eigen::Matrix3d::Identity();
-  P_.middleCols<3>(enters_at_) += delta * S_;
-  P_.middleRows<3>(enters_at_) += delta * S_.transpose();
-  P_.block<3, 3>(enters_at_, enters_at_) += delta * delta * G_ + Q;
-  S_ *= phi;
-  S_.middleRows<3>(enters_at_) += delta * phi * G_ + Q;
-  G_ = phi * phi * G_ + Q;
+  const double delta = phi - decay(dt_s, source.filter_tau_s);
+  const double variance = source.process.sigma * source.process.sigma;
+  const Eigen::Matrix3d Q = variance * (1.0 - phi * phi) * Eigen::Matrix3d::Identity();
+  P.middleCols<3>(at) += delta * source.S;
+  P.middleRows<3>(at) += delta * source.S.transpose();
+  P.block<3, 3>(at, at) += delta * delta * source.G + Q;
+  source.S *= phi;
+  source.S.middleRows<3>(at) += delta * phi * source.G + Q;
+  source.G = phi * phi * source.G + Q;
 }
 
-void MarkovSource::update(const ScalarGain& gain) {
-  ErrorVector cross = P_ * gain.h;
-  Eigen::RowVector3d innovation_g = gain.h.transpose() * S_;  // E[innovation g^T]
-  double variance = gain.h.dot(cross);
-  if (enters_at_ == kFixes && gain.axis < 3) {
-    variance += 2.0 * gain.per_sigma * innovation_g(gain.axis) +
-                gain.per_sigma * gain.per_sigma * G_(gain.axis, gain.axis);
-    cross += gain.per_sigma * S_.col(gain.axis);
-    innovation_g += gain.per_sigma * G_.row(gain.axis);
+/// error' = error - K innovation, in second moments.
+void SourceCovariance::update(const ScalarGain& gain) {
+  const double per_sigma = gain.per_sigma;
+  ErrorVector cross = P * gain.h;  // E[error innovation]
+  double variance = gain.h.dot(cross) + fix_variance(gain.axis) * per_sigma * per_sigma;
+  for (MarkovSource& source : processes_) {
+    Eigen::RowVector3d innovation_g = gain.h.transpose() * source.S;  // E[innovation g^T]
+    if (source.enters_at == MarkovSource::kFixes && gain.axis < 3) {
+      variance += 2.0 * per_sigma * innovation_g(gain.axis) +
+                  per_sigma * per_sigma * source.G(gain.axis, gain.axis);
+      cross += per_sigma * source.S.col(gain.axis);
+      innovation_g += per_sigma * source.G.row(gain.axis);
+    }
+    source.S -= gain.K * innovation_g;
   }
-  apply_gain(P_, gain.K, cross, variance);
-  S_ -= gain.K * innovation_g;
+  const ErrorVector half = cross - 0.5 * variance * gain.K;
+  P.noalias() -= gain.K * half.transpose() + half * gain.K.transpose();
 }
 
 void ParameterSources::propagate(const Leg& leg) {

@@ -23,25 +23,24 @@ Eigen::Matrix3d off_diagonal(double value) {
 TruthModel::TruthModel(const Scene& scene, const ErrorMatrix& initial_nav,
                        const ProcessNoise& filter, bool by_source)
     : by_source_(by_source), parameter_moments_(parameter_moments(scene.imu)) {
-  white(ErrorSource::kInitial).P += initial_nav;
+  of(ErrorSource::kInitial).P += initial_nav;
   const ImuErrorModel& believed = scene.filter.imu;
   add_triad(scene.imu.accelerometer, kBa, believed.accelerometer.bias, filter.tau_a_s);
   add_triad(scene.imu.gyro, kBg, believed.gyro.bias, filter.tau_g_s);
   const GnssErrorModel& gnss = scene.gnss.errors;
-  white(ErrorSource::kGnssPosition).fix_variance.head<3>() += gnss.position_sigma_n_m.cwiseAbs2();
-  white(ErrorSource::kGnssVelocity).fix_variance.tail<3>() += gnss.velocity_sigma_n_mps.cwiseAbs2();
-  if (!gnss.correlated_sigma_n_m.isZero(0.0)) {
-    MarkovSource::Start start;
-    start.variance = gnss.correlated_sigma_n_m.cwiseAbs2();
-    const GaussMarkov process{0.0, gnss.correlation_time_s};  // its drive never enters the error
-    markov_.emplace_back(ErrorSource::kGnssCorrelated,
-                         MarkovSource(MarkovSource::kFixes, start, process, 0.0));
-  }
+  of(ErrorSource::kGnssPosition).fix_variance.head<3>() += gnss.position_sigma_n_m.cwiseAbs2();
+  of(ErrorSource::kGnssVelocity).fix_variance.tail<3>() += gnss.velocity_sigma_n_mps.cwiseAbs2();
+  if (gnss.correlated_sigma_n_m.isZero(0.0)) return;
+  MarkovSource source;
+  source.process.tau_s = gnss.correlation_time_s;  // its drive never enters the error
+  MarkovStart start;
+  start.variance = gnss.correlated_sigma_n_m.cwiseAbs2();
+  of(ErrorSource::kGnssCorrelated).add_process(source, start);
 }
 
-WhiteSource& TruthModel::white(ErrorSource source) {
-  if (white_.empty() || by_source_) white_.emplace_back(source, WhiteSource{});
-  return white_.back().second;
+SourceCovariance& TruthModel::of(ErrorSource source) {
+  if (sources_.empty() || by_source_) sources_.emplace_back(source, SourceCovariance{});
+  return sources_.back().second;
 }
 
 void TruthModel::add_triad(const TriadErrorModel& triad, int bias_row,
@@ -49,41 +48,42 @@ void TruthModel::add_triad(const TriadErrorModel& triad, int bias_row,
   const auto of_triad = [bias_row](ErrorSource accelerometer, ErrorSource gyro) {
     return bias_row == kBa ? accelerometer : gyro;
   };
-  WhiteSource& noise = white(of_triad(ErrorSource::kAccelerometerNoise, ErrorSource::kGyroNoise));
-  (bias_row == kBa ? noise.noise.velocity_m2_per_s3 : noise.noise.attitude_rad2_per_s) +=
+  ProcessNoise& noise =
+      of(of_triad(ErrorSource::kAccelerometerNoise, ErrorSource::kGyroNoise)).noise;
+  (bias_row == kBa ? noise.velocity_m2_per_s3 : noise.attitude_rad2_per_s) +=
       triad.noise_density * triad.noise_density;
 
-  const ErrorSource bias = of_triad(ErrorSource::kAccelerometerBias, ErrorSource::kGyroBias);
-  MarkovSource::Start turn_on;
+  SourceCovariance& bias = of(of_triad(ErrorSource::kAccelerometerBias, ErrorSource::kGyroBias));
+  MarkovStart turn_on;
   turn_on.variance.setConstant(triad.bias_sigma * triad.bias_sigma);
   turn_on.mean = triad.bias;
   turn_on.known = known_bias;
-  const bool is_zero = triad.bias_sigma == 0.0 && triad.bias.isZero(0.0) && known_bias.isZero(0.0);
   if (std::isinf(filter_tau_s)) {
+    // The state is as constant as the bias: nothing else need be remembered.
     const Eigen::Vector3d error = turn_on.mean - turn_on.known;
     const Eigen::Matrix3d variance = turn_on.variance.asDiagonal();
-    white(bias).P.block<3, 3>(bias_row, bias_row) += variance + error * error.transpose();
-  } else if (!is_zero) {
-    markov_.emplace_back(bias, MarkovSource(bias_row, turn_on, GaussMarkov{}, filter_tau_s));
+    bias.P.block<3, 3>(bias_row, bias_row) += variance + error * error.transpose();
+  } else if (!turn_on.variance.isZero(0.0) || !turn_on.mean.isZero(0.0) ||
+             !turn_on.known.isZero(0.0)) {
+    bias.add_process({bias_row, GaussMarkov{}, filter_tau_s}, turn_on);
   }
+  if (triad.in_run.sigma == 0.0) return;
   add_drift(triad.in_run, bias_row,
-            of_triad(ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift), filter_tau_s);
+            of(of_triad(ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift)), filter_tau_s);
 }
 
-void TruthModel::add_drift(const GaussMarkov& in_run, int bias_row, ErrorSource drift,
+void TruthModel::add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance& drift,
                            double filter_tau_s) {
-  if (in_run.sigma == 0.0) return;
-  MarkovSource::Start start;
+  MarkovStart start;
   start.variance.setConstant(in_run.sigma * in_run.sigma);
   if (in_run.tau_s != filter_tau_s) {
-    markov_.emplace_back(drift, MarkovSource(bias_row, start, in_run, filter_tau_s));
+    drift.add_process({bias_row, in_run, filter_tau_s}, start);
     return;
   }
-  // The filter's own state is the drift: nothing else need be remembered.
-  WhiteSource& source = white(drift);
-  source.P.block<3, 3>(bias_row, bias_row).diagonal() += start.variance;
+  // The filter's own state is the drift.
+  drift.P.block<3, 3>(bias_row, bias_row).diagonal() += start.variance;
   const double drive = std::isinf(in_run.tau_s) ? 0.0 : 2.0 * start.variance.x() / in_run.tau_s;
-  (bias_row == kBa ? source.noise.b_a_m2_per_s5 : source.noise.b_g_rad2_per_s3) += drive;
+  (bias_row == kBa ? drift.noise.b_a_m2_per_s5 : drift.noise.b_g_rad2_per_s3) += drive;
 }
 
 TruthModel::ParameterMoments TruthModel::parameter_moments(const ImuErrorModel& imu) {
@@ -115,44 +115,38 @@ TruthModel::ParameterMoments TruthModel::parameter_moments(const ImuErrorModel& 
 
 bool TruthModel::is_known_to(const ErrorMatrix& filter_P, const ProcessNoise& filter,
                              const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const {
-  if (by_source_ || !markov_.empty() || !parameter_moments_.empty()) return false;
-  const WhiteSource& all = white_.front().second;
+  const SourceCovariance& all = sources_.front().second;
+  if (by_source_ || all.has_processes() || !parameter_moments_.empty()) return false;
   return all.P.isApprox(filter_P, 1e-12) && same(all.noise, filter) &&
          all.fix_variance.isApprox(filter_fix_variance, 1e-12);
 }
 
 void TruthModel::propagate(const Leg& leg) {
-  for (auto& [source, white] : white_) white.propagate(leg);
-  for (auto& [source, markov] : markov_) markov.propagate(leg);
+  for (auto& [name, source] : sources_) source.propagate(leg);
   if (!parameter_moments_.empty()) parameters_.propagate(leg);
 }
 
 void TruthModel::update(const ScalarGain& gain) {
-  for (auto& [source, white] : white_) white.update(gain);
-  for (auto& [source, markov] : markov_) markov.update(gain);
+  for (auto& [name, source] : sources_) source.update(gain);
   if (!parameter_moments_.empty()) parameters_.update(gain);
 }
 
 ErrorMatrix TruthModel::covariance() const {
   ErrorMatrix sum = ErrorMatrix::Zero();
-  for (const auto& [source, white] : white_) sum += white.P;
-  for (const auto& [source, markov] : markov_) sum += markov.covariance();
+  for (const auto& [name, source] : sources_) sum += source.P;
   if (parameter_moments_.empty()) return sum;
   ParameterMoment moment = ParameterMoment::Zero();
-  for (const auto& [source, own] : parameter_moments_) moment += own;
+  for (const auto& [name, own] : parameter_moments_) moment += own;
   return sum + parameters_.covariance(moment);
 }
 
 ErrorBudget TruthModel::budget(const Eigen::Matrix3d& C_en) const {
   ErrorBudget budget;
-  const auto add = [&](ErrorSource source, const ErrorMatrix& P) {
-    budget.push_back({source, C_en.transpose() * P.block<3, 3>(kDr, kDr) * C_en});
+  const auto add = [&](ErrorSource name, const ErrorMatrix& P) {
+    budget.push_back({name, C_en.transpose() * P.block<3, 3>(kDr, kDr) * C_en});
   };
-  for (const auto& [source, white] : white_) add(source, white.P);
-  for (const auto& [source, markov] : markov_) add(source, markov.covariance());
-  for (const auto& [source, moment] : parameter_moments_) {
-    add(source, parameters_.covariance(moment));
-  }
+  for (const auto& [name, source] : sources_) add(name, source.P);
+  for (const auto& [name, moment] : parameter_moments_) add(name, parameters_.covariance(moment));
   return budget;
 }
 

@@ -12,7 +12,7 @@ namespace leeway::sim {
 
 class TruthModel {
  public:
-  /// @param by_source  keeps the sources apart; else those of one kind share one covariance
+  /// @param by_source  keeps the sources apart; else they share one covariance
   TruthModel(const Scene& scene, const ErrorMatrix& initial_nav, const ProcessNoise& filter,
              bool by_source);
 
@@ -36,12 +36,12 @@ class TruthModel {
   static ParameterMoments parameter_moments(const ImuErrorModel& imu);
   void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias,
                  double filter_tau_s);
-  void add_drift(const GaussMarkov& in_run, int bias_row, ErrorSource drift, double filter_tau_s);
-  WhiteSource& white(ErrorSource source);
+  static void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance& drift,
+                        double filter_tau_s);
+  SourceCovariance& of(ErrorSource source);
 
   bool by_source_;
-  std::vector<std::pair<ErrorSource, WhiteSource>> white_{};
-  std::vector<std::pair<ErrorSource, MarkovSource>> markov_{};
+  std::vector<std::pair<ErrorSource, SourceCovariance>> sources_{};  // one for all, or one each
   ParameterMoments parameter_moments_;
   ParameterSources parameters_{};
 };
