@@ -147,20 +147,22 @@ class Analysis {
 
   /// The error at the arrival of the fix of now, before it is used.
   void score(double arrival_s) {
+    Variances variances;
+    variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
+    window_.largest = window_.largest.max(variances);
+    // Of the earlier windows nothing but their repetition counts.
+    if (window_.index > 0 && !config_.observer) return;
     if (arrival_s == now_s_) {
       score(pair_, now_s_);
-      return;
+    } else {
+      ScenePair ahead = pair_;
+      score(ahead, advance(ahead, now_s_, arrival_s));
     }
-    ScenePair ahead = pair_;
-    score(ahead, advance(ahead, now_s_, arrival_s));
   }
 
   void score(const ScenePair& pair, double t_s) {
     const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
     if (config_.observer) config_.observer(before);
-    Variances variances;
-    variances << before.claimed.diagonal(), before.truth.diagonal();
-    window_.largest = window_.largest.max(variances);
     if (window_.index > 0) return;
     const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(before.r_e_m));
     const auto horizontal = [&](const ErrorMatrix& P) -> Eigen::Matrix2d {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "leeway/error.hpp"
@@ -44,7 +45,6 @@ class Solver {
       : scene_(scene),
         config_(config),
         track_(error_track(scene, config.covariance_step_s)),
-        fine_track_(error_track(scene, 0.5 * config.covariance_step_s)),
         log_longest_(std::log(0.5 * scene.duration_s)) {}
 
   Interval solve(double limit_m) {
@@ -163,14 +163,15 @@ class Solver {
     answer.settled = analysis.settled;
     // Fixes closer than half a step are the steps.
     if (std::exp(log_interval) <= 0.5 * config_.covariance_step_s) return;
-    const double fine_m = analysis_at(log_interval, fine_track_).true_m;
+    if (!fine_track_) fine_track_ = error_track(scene_, 0.5 * config_.covariance_step_s);
+    const double fine_m = analysis_at(log_interval, *fine_track_).true_m;
     answer.step_effect = std::abs(fine_m / analysis.true_m - 1.0);
   }
 
   const Scene& scene_;
   const IntervalConfig& config_;
   ErrorTrack track_;
-  ErrorTrack fine_track_;
+  std::optional<ErrorTrack> fine_track_{};
   double log_longest_;
   std::map<double, CovarianceAnalysis> known_{};  // by log(interval)
 };
