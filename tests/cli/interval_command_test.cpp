@@ -111,6 +111,7 @@ TEST_CASE("interval: wrong input is refused with what to do") {
   refused("--scene nowhere.toml", "nowhere.toml");
   refused(scene("square-loop.toml") + "--imu marin", "marine");
   refused(scene("square-loop.toml") + "--limit -3", "--limit");
+  refused(scene("square-loop.toml") + "--range middle", "--range");
 }
 
 TEST_CASE("analyze: claimed, true and the budget, which adds up") {
