@@ -7,11 +7,6 @@
 #include "leeway/error.hpp"
 
 namespace leeway {
-namespace {
-
-constexpr double kLarge = 1e200;
-
-}  // namespace
 
 double chi_square_survival(double x, int dof) {
   if (x <= 0.0) return 1.0;

@@ -78,6 +78,9 @@ void Ekf::predict(const ImuIncrement& inc) {
   corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
   corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
   omega_ib_b_radps_ = 1.0 / inc.dt_s * inc.dtheta_b_rad;
+  mean_rate_window_s_ = std::max(std::min(mean_rate_window_s_ + inc.dt_s, kMeanRateS), inc.dt_s);
+  mean_omega_ib_b_radps_ +=
+      inc.dt_s / mean_rate_window_s_ * (omega_ib_b_radps_ - mean_omega_ib_b_radps_);
 
   // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370
   // km.
@@ -166,10 +169,8 @@ UpdateReport Ekf::update(const GnssFix& fix) {
 }
 
 double Ekf::position_weight(Time t) const {
-  if (!last_position_fix_ || config_.gnss_correlation_s == 0.0) return 1.0;
-  // (1 - a) / (1 + a) is the tanh; a second fix at the same time repeats the first: weight 0.
-  return std::sqrt(
-      std::tanh(0.5 * to_seconds(t - *last_position_fix_) / config_.gnss_correlation_s));
+  if (!last_position_fix_) return 1.0;
+  return gnss_position_weight(to_seconds(t - *last_position_fix_), config_.gnss_correlation_s);
 }
 
 ErrorMatrix Ekf::covariance() const {

@@ -1,5 +1,6 @@
 #include "leeway/filters/horizontal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -28,12 +29,20 @@ struct Tail {
   double density{0.0};
 };
 
+constexpr std::size_t kNodes = 64;  // on a quarter of the period
+
+const std::array<double, kNodes> kCosSq = [] {
+  std::array<double, kNodes> cos_sq{};
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    const double c = std::cos((static_cast<double>(i) + 0.5) * 0.5 * std::numbers::pi / kNodes);
+    cos_sq[i] = c * c;
+  }
+  return cos_sq;
+}();
+
 Tail tail(const Eigen::Vector2d& variances, double r) {
-  constexpr int kNodes = 64;  // a quarter of the period
   Tail sum;
-  for (int i = 0; i < kNodes; ++i) {
-    const double u = (i + 0.5) * 0.5 * std::numbers::pi / kNodes;
-    const double cos_sq = std::cos(u) * std::cos(u);
+  for (const double cos_sq : kCosSq) {
     const double variance = variances(0) * cos_sq + variances(1) * (1.0 - cos_sq);
     const double survival = std::exp(-0.5 * r * r / variance);
     sum.probability += survival / kNodes;
@@ -57,8 +66,7 @@ HorizontalMetric horizontal_metric_from_name(std::string_view wanted) {
 
 Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
                                       const Eigen::Matrix3d& P_rr_e_m2) {
-  const Eigen::Matrix<double, 3, 2> C_e_ne =
-      ned_to_ecef(geodetic_from_ecef(r_e_m)).leftCols<2>();
+  const Eigen::Matrix<double, 3, 2> C_e_ne = ned_to_ecef(geodetic_from_ecef(r_e_m)).leftCols<2>();
   return C_e_ne.transpose() * P_rr_e_m2 * C_e_ne;
 }
 
@@ -88,6 +96,12 @@ double horizontal_radius_m(const Eigen::Matrix2d& P_ne_m2, double probability) {
     if (std::abs(step) < 1e-12 * r) break;
   }
   return r;
+}
+
+double probability_beyond(const Eigen::Matrix2d& P_ne_m2, double radius_m) {
+  const Eigen::Vector2d variances = principal_variances(P_ne_m2);
+  if (variances(0) == 0.0) return 0.0;
+  return tail(variances, radius_m).probability;
 }
 
 }  // namespace leeway

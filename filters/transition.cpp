@@ -78,6 +78,28 @@ void advance(Transition& Phi, const ErrorDynamics& step) {
   Phi.dt_s += dt_s;
 }
 
+Transition compose(const Transition& later, const Transition& earlier) {
+  const Transition& l = later;
+  const Transition& e = earlier;
+  Transition Phi;
+  Phi.dt_s = l.dt_s + e.dt_s;
+  Phi.psi_psi = l.psi_psi * e.psi_psi;
+  Phi.psi_g = l.psi_psi * e.psi_g + l.psi_g * e.g_g;
+  Phi.v_psi = l.v_psi * e.psi_psi + l.v_v * e.v_psi + l.v_r * e.r_psi;
+  Phi.v_v = l.v_v * e.v_v + l.v_r * e.r_v;
+  Phi.v_r = l.v_v * e.v_r + l.v_r * e.r_r;
+  Phi.v_a = l.v_v * e.v_a + l.v_r * e.r_a + l.v_a * e.a_a;
+  Phi.v_g = l.v_psi * e.psi_g + l.v_v * e.v_g + l.v_r * e.r_g + l.v_g * e.g_g;
+  Phi.r_psi = l.r_psi * e.psi_psi + l.r_v * e.v_psi + l.r_r * e.r_psi;
+  Phi.r_v = l.r_v * e.v_v + l.r_r * e.r_v;
+  Phi.r_r = l.r_v * e.v_r + l.r_r * e.r_r;
+  Phi.r_a = l.r_v * e.v_a + l.r_r * e.r_a + l.r_a * e.a_a;
+  Phi.r_g = l.r_psi * e.psi_g + l.r_v * e.v_g + l.r_r * e.r_g + l.r_g * e.g_g;
+  Phi.a_a = l.a_a * e.a_a;
+  Phi.g_g = l.g_g * e.g_g;
+  return Phi;
+}
+
 ErrorMatrix system_matrix(const Eigen::Matrix3d& C_eb, const Eigen::Vector3d& f_e_mps2,
                           const Eigen::Matrix3d& gravity_gradient_e, double tau_a_s,
                           double tau_g_s) {

@@ -1,12 +1,12 @@
 #include "leeway/imu_class.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
 
-#include "leeway/earth.hpp"
 #include "leeway/error.hpp"
-#include "leeway/rotation.hpp"
+#include "leeway/units.hpp"
 
 namespace leeway {
 namespace {
@@ -47,10 +47,20 @@ constexpr std::array<Table1Row, 5> kTable1{{
 
 constexpr std::array<std::string_view, 3> kRangeEndNames{"low", "mid", "high"};
 
-constexpr double kMps2PerUg = 1e-6 * kStandardGravityMps2;
-constexpr double kRadPerSqrtSPerDegPerSqrtH = kRadPerDeg / 60.0;
-
 const Table1Row& row(ImuClass c) { return kTable1[static_cast<std::size_t>(c)]; }
+
+/// The class whose range is nearest on a logarithmic scale; of two as near, the better one.
+ImuClass nearest(Range Table1Row::*range, double value) {
+  const auto distance = [range, value](ImuClass c) {
+    const Range& r = row(c).*range;
+    // A unit conversion may leave the end of a range by an ulp.
+    constexpr double kRounding = 1e-12;
+    const double outside = std::max(std::log(r.low / value), std::log(value / r.high));
+    return outside > kRounding ? outside : 0.0;
+  };
+  return *std::min_element(kImuClasses.begin(), kImuClasses.end(),
+                           [&](ImuClass a, ImuClass b) { return distance(a) < distance(b); });
+}
 
 template <class Value, std::size_t N>
 Value from_name(const std::array<Value, N>& values, std::string_view wanted, const char* what) {
@@ -81,20 +91,37 @@ ImuErrorModel imu_class_model(ImuClass c, RangeEnd end) {
   const Table1Row& table = row(c);
   ImuErrorModel model;
   model.accelerometer.bias_sigma = table.accelerometer_drift_mps2.at(end);
-  model.accelerometer.noise_density = table.accelerometer_noise_ug_per_sqrt_hz.at(end) * kMps2PerUg;
+  model.accelerometer.noise_density =
+      table.accelerometer_noise_ug_per_sqrt_hz.at(end) * units::kUgPerSqrtHz.si;
   model.gyro.bias_sigma = table.gyro_drift_radps.at(end);
-  model.gyro.noise_density = table.gyro_noise_deg_per_sqrt_h.at(end) * kRadPerSqrtSPerDegPerSqrtH;
+  model.gyro.noise_density = table.gyro_noise_deg_per_sqrt_h.at(end) * units::kDegPerSqrtH.si;
   return model;
+}
+
+ImuClassification classify(const ImuErrorModel& model) {
+  // The bias that a filter starts with, whether it stays or wanders: Table 1 has one drift only.
+  const auto drift = [](const TriadErrorModel& triad) {
+    return std::hypot(triad.bias_sigma, triad.in_run.sigma);
+  };
+  ImuClassification c;
+  c.accelerometer_drift = nearest(&Table1Row::accelerometer_drift_mps2, drift(model.accelerometer));
+  c.gyro_drift = nearest(&Table1Row::gyro_drift_radps, drift(model.gyro));
+  c.accelerometer_noise = nearest(&Table1Row::accelerometer_noise_ug_per_sqrt_hz,
+                                  model.accelerometer.noise_density / units::kUgPerSqrtHz.si);
+  c.gyro_noise = nearest(&Table1Row::gyro_noise_deg_per_sqrt_h,
+                         model.gyro.noise_density / units::kDegPerSqrtH.si);
+  c.overall = std::max({c.accelerometer_drift, c.gyro_drift, c.accelerometer_noise, c.gyro_noise});
+  return c;
 }
 
 ImuErrorModel automotive_mems_model() {
   ImuErrorModel model;
   model.accelerometer.bias_sigma = 0.3;
-  model.accelerometer.noise_density = 0.1 / 60.0;
+  model.accelerometer.noise_density = 0.1 * units::kMpsPerSqrtH.si;
   model.accelerometer.in_run = {0.03, 300.0};
-  model.gyro.bias_sigma = 0.5 * kRadPerDeg;
-  model.gyro.noise_density = 0.3 * kRadPerSqrtSPerDegPerSqrtH;
-  model.gyro.in_run = {0.02 * kRadPerDeg, 300.0};
+  model.gyro.bias_sigma = 0.5 * units::kDegPerS.si;
+  model.gyro.noise_density = 0.3 * units::kDegPerSqrtH.si;
+  model.gyro.in_run = {0.02 * units::kDegPerS.si, 300.0};
   return model;
 }
 

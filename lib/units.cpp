@@ -6,25 +6,30 @@
 namespace leeway {
 namespace {
 
-std::string text_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
+std::string number(double value, int digits) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
   return text.data();
+}
+
+/// A ratio has no symbol.
+std::string with_symbol(const std::string& value, std::string_view symbol) {
+  return symbol == units::kRatio.symbol ? value : value + " " + std::string(symbol);
 }
 
 }  // namespace
 
 std::string working(double value, const Unit& unit) {
-  const std::string given = text_of(value);
-  std::string text = given + " " + std::string(unit.symbol);
-  if (unit.base != unit.symbol) {
-    text += " = " + given;
-    if (unit.times != 1.0) text += " x " + text_of(unit.times);
-    if (unit.over != 1.0) text += " / " + text_of(unit.over);
-    text += " " + std::string(unit.base);
-  }
-  if (unit.base != unit.si_symbol) {
-    text += " = " + text_of(value * unit.si) + " " + std::string(unit.si_symbol);
+  constexpr int kGiven = 6;
+  constexpr int kFactor = 10;
+  constexpr int kResult = 4;
+  std::string text = with_symbol(number(value, kGiven), unit.symbol);
+  if (unit.symbol != unit.si_symbol) {
+    std::string step = number(value, kGiven);
+    if (unit.times != 1.0) step += " x " + number(unit.times, kFactor);
+    if (unit.over != 1.0) step += " / " + number(unit.over, kFactor);
+    text += " = " + with_symbol(step, unit.base);
+    text += " = " + with_symbol(number(value * unit.si, kResult), unit.si_symbol);
   }
   return text;
 }

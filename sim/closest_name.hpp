@@ -8,7 +8,7 @@
 
 namespace leeway::sim {
 
-/// Levenshtein distance of the first 64 characters.
+/// Levenshtein distance of the first 64 characters, blind to case.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// "did you mean 'gyro'? Accepted: accelerometer, gyro"

@@ -141,9 +141,13 @@ EllipsoidPath::EllipsoidPath(const std::vector<Corner>& corners, bool loop)
     const Eigen::Vector3d& up = nodes_[k].up;
     direct(k, is_first ? up : nodes_[(k + count - 1) % count].up,
            is_last ? up : nodes_[(k + 1) % count].up);
-    if (std::abs(nodes_[k].turn_rad) < kStraightRad) nodes_[k].turn_rad = 0.0;
-    nodes_[k].turn_m =
-        kSmoothStepMaxSlope * std::abs(nodes_[k].turn_rad) * corners[k].turn_radius_m;
+    const double turn_rad = std::abs(nodes_[k].turn_rad);
+    if (turn_rad < kStraightRad) {
+      nodes_[k].turn_rad = 0.0;
+    } else {
+      nodes_[k].turn_m = std::max(kSmoothStepMaxSlope * turn_rad * corners[k].turn_radius_m,
+                                  corners[k].shortest_turn_m);
+    }
     nodes_[k].cut_m = nodes_[k].turn_m * turn_cut(nodes_[k].turn_rad);
   }
   measure(legs_m, loop);

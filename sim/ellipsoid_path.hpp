@@ -15,7 +15,8 @@ namespace leeway::sim {
 /// A corner of the path, before it is rounded.
 struct Corner {
   Geodetic position{};
-  double turn_radius_m{};  ///< least radius of the rounded corner, > 0
+  double turn_radius_m{};    ///< least radius of the rounded corner, > 0
+  double shortest_turn_m{};  ///< a corner that turns a little is rounded over this at least
 };
 
 /// Where a corner's rounding begins and ends, as distances along the path.

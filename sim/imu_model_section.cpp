@@ -156,8 +156,8 @@ class ModelSection {
          under->likely_keys([&](double si) { return relation.allows(over->number(), si); })) {
       likely.push_back(std::move(key));
     }
-    under->fail_at_key("does not go with " + over->text() + ": no real sensor has both" +
-                       likely_intent(likely));
+    under->fail_at_key("= " + under->text() + " does not go with '" + std::string(over->key()) +
+                       "' = " + over->text() + ": no real sensor has both" + likely_intent(likely));
   }
 
   std::array<std::optional<TomlValue>, kStated> given_{};

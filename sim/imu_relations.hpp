@@ -35,15 +35,15 @@ struct Relation {
 };
 
 /// The bounds are those of the catalogue (imu_catalogue.hpp) and of [seed Table 1] with room: a
-/// factor of 5 or more to the nearest of them, and to docs/examples/imu-models.
+/// factor of 2 or more to the nearest of them.
 /// In-run drift over noise is 1 / sqrt(averaging time of the Allan minimum), up to a factor.
 inline constexpr std::array<Relation, 6> kRelations{{
     {Stated::kAccelerometerInRun, Stated::kAccelerometerNoise, 3e-3, 100.0},
     {Stated::kGyroInRun, Stated::kGyroNoise, 1e-3, 30.0},
-    {Stated::kAccelerometerBiasSigma, Stated::kAccelerometerNoise, 0.02, 2000.0},
-    {Stated::kGyroBiasSigma, Stated::kGyroNoise, 5e-4, 2000.0},
+    {Stated::kAccelerometerBiasSigma, Stated::kAccelerometerNoise, 0.02, 3000.0},
+    {Stated::kGyroBiasSigma, Stated::kGyroNoise, 5e-4, 1500.0},
     {Stated::kGyroBiasSigma, Stated::kAccelerometerBiasSigma, 1e-6, 1.0},
-    {Stated::kGyroNoise, Stated::kAccelerometerNoise, 1e-4, 3.0},
+    {Stated::kGyroNoise, Stated::kAccelerometerNoise, 1e-4, 1.0},
 }};
 
 }  // namespace leeway::sim

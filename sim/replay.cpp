@@ -173,8 +173,7 @@ class RmsSum {
 class Replay {
  public:
   Replay(const ReplayInput& input, const NavigatorConfig& config)
-      : input_(input),
-        imu_(input.imu, input.imu_options),
+      : imu_(input.imu, input.imu_options),
         gnss_(input.gnss, input.gnss_options),
         navigator_(config),
         output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)) {
@@ -283,7 +282,6 @@ class Replay {
     return result_;
   }
 
-  const ReplayInput& input_;
   ImuLogReader imu_;
   GnssLogReader gnss_;
   Navigator navigator_;

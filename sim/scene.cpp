@@ -52,6 +52,8 @@ void validate(const Scene& scene) {
           "gnss outlier_sigma_m", scene.gnss.outlier_sigma_m, "0 to 1e6");
   require(scene.budget.limit_m > 0.0 && scene.budget.limit_m <= 1e6, "budget limit_m",
           scene.budget.limit_m, "> 0 and at most 1e6");
+  require(scene.budget.last_s > 0.0 && scene.budget.last_s <= 1e6, "budget last_s",
+          scene.budget.last_s, "> 0 and at most 1e6");
   require(scene.trials >= 1, "trials", scene.trials, ">= 1");
 }
 
@@ -67,12 +69,17 @@ InitialSigma initial_sigma(const Scene& scene) {
       wgs84::kRotationRateRadps * std::cos(scene.trajectory.plane.origin.lat_rad);
   InitialSigma sigma;
   sigma.tilt_rad = bias_sigma(scene.imu.accelerometer) / kLevellingGravityMps2;
-  sigma.heading_rad = std::clamp(bias_sigma(scene.imu.gyro) / earth_rate_radps, kLeastHeadingRad,
-                                 kMostHeadingRad);
+  sigma.heading_rad =
+      std::clamp(bias_sigma(scene.imu.gyro) / earth_rate_radps, kLeastHeadingRad, kMostHeadingRad);
   sigma.velocity_mps = scene.gnss.errors.velocity_sigma_n_mps.maxCoeff();
   sigma.position_m = std::hypot(scene.gnss.errors.position_sigma_n_m.head<2>().maxCoeff(),
                                 scene.gnss.errors.correlated_sigma_n_m.head<2>().maxCoeff());
   return sigma;
+}
+
+double scored_part_s(const Scene& scene) {
+  return std::max({scene.budget.last_s, 2.0 * scene.gnss.interval_s,
+                   scene.trajectory.period_s.value_or(0.0)});
 }
 
 std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s) {

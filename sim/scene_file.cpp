@@ -29,6 +29,10 @@ class SceneReader {
     root.table("scene", [this](TomlSection& section) { read_scene_section(section); });
     require(root, "trajectory", [this](TomlSection& section) {
       scene_.trajectory = read_trajectory(section, folder_, duration_s_);
+      const double length_s = scene_.trajectory.duration_s;
+      if (!kDuration.limits.contain(length_s)) {
+        section.fail(fmt::format("the motion takes {:.9g} s, must be 1 to 1e6 s", length_s));
+      }
     });
     scene_.duration_s = scene_.trajectory.duration_s;
     require(root, "imu", [this](TomlSection& section) {
@@ -105,13 +109,17 @@ Scene read(const TomlDocument& document, const std::filesystem::path& path,
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& path, std::optional<double> duration_s) {
+void require_text_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw Error(path.string() + ": no scene can be read from it: " + error.message());
+  if (error) throw Error(path.string() + ": cannot be read: " + error.message());
   if (size > kLongestSceneFile) {
-    throw Error(path.string() + ": is " + std::to_string(size) + " bytes long: no scene file");
+    throw Error(fmt::format("{}: {} bytes are too long for a TOML file", path.string(), size));
   }
+}
+
+Scene read_scene(const std::filesystem::path& path, std::optional<double> duration_s) {
+  require_text_file(path);
   return read(TomlDocument::from_file(path), path, duration_s);
 }
 

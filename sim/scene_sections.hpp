@@ -15,6 +15,9 @@ namespace leeway::sim {
 inline constexpr double kShortestSceneS = 1.0;
 inline constexpr double kLongestSceneS = 1e6;
 
+/// @throws Error unless the path is a file of a length that scenes and models have.
+void require_text_file(const std::filesystem::path& path);
+
 /// [trajectory]. @param duration_s  absent: that of a route or a recording, one hour of the others
 Trajectory read_trajectory(TomlSection& section, const std::filesystem::path& folder,
                            std::optional<double> duration_s);

@@ -9,6 +9,7 @@
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
 #include "leeway/sim/bias_model.hpp"
+#include "leeway/sim/imu_catalogue.hpp"
 #include "leeway/sim/imu_model_file.hpp"
 #include "scene_sections.hpp"
 #include "scene_units.hpp"
@@ -36,6 +37,7 @@ constexpr Quantity kTilt{"tilt", kAngles, zero_or(1e-7, 30.0 * kRadPerDeg)};
 constexpr Quantity kHeading{"heading", kAngles, zero_or(1e-7, 180.0 * kRadPerDeg)};
 constexpr Quantity kInitialVelocity{"velocity", kSpeeds, zero_or(1e-4, 100.0)};
 constexpr Quantity kInitialPosition{"position", kLengths, zero_or(1e-3, 1e5)};
+constexpr Quantity kLast{"last", kTimes, between(1.0, kLongestSceneS)};
 constexpr Quantity kLimit{"limit", kLengths, between(1e-2, 1e5)};
 
 /// A sigma of position: horizontal and vertical, or one for each axis.
@@ -81,13 +83,28 @@ NamedImuModel read_class(TomlSection& section, const std::string& wanted) {
   return {wanted + "/" + std::string(name(end)), imu_class_model(imu_class_from_name(wanted), end)};
 }
 
+/// What a key of the section names, read by f.
+template <class F>
+decltype(auto) usable(const TomlSection& section, std::string_view key, F&& f) {
+  try {
+    return f();
+  } catch (const Error& error) {
+    section.fail_at(key, std::string("cannot be used: ") + error.what());
+  }
+}
+
+NamedImuModel read_part(const TomlSection& section, const std::string& wanted) {
+  const ImuPart& part =
+      usable(section, "part", [&]() -> const ImuPart& { return imu_part(wanted); });
+  return {std::string(part.name), imu_model(part)};
+}
+
 NamedImuModel read_model_file(const TomlSection& section, const std::filesystem::path& folder,
                               const std::string& file) {
-  try {
-    return {file, read_imu_model(folder / file)};
-  } catch (const Error& error) {
-    section.fail_at("model", std::string("cannot be used: ") + error.what());
-  }
+  return {file, usable(section, "model", [&] {
+            require_text_file(folder / file);
+            return read_imu_model(folder / file);
+          })};
 }
 
 void apply_bias(TomlSection& section, ImuErrorModel& model) {
@@ -132,15 +149,17 @@ NamedImuModel read_imu(TomlSection& section, const std::filesystem::path& folder
   for (const ImuClass c : kImuClasses) classes.push_back(name(c));
   classes.push_back(kMems);
   const auto by_class = section.choice("class", classes);
+  const auto part = section.text("part");
   const auto file = section.text("model");
   const bool is_inline = section.has("accelerometer") || section.has("gyro");
-  if ((by_class ? 1 : 0) + (file ? 1 : 0) + (is_inline ? 1 : 0) != 1) {
+  if (by_class.has_value() + part.has_value() + file.has_value() + is_inline != 1) {
     section.fail(
-        "an IMU is one of: class = \"tactical\" (or another), model = \"a file.toml\", or "
-        "sections accelerometer and gyro of its own");
+        "an IMU is one of: class = \"tactical\" (or another), part = \"STIM300\" (or another of "
+        "the catalogue), model = \"a file.toml\", or sections accelerometer and gyro of its own");
   }
   NamedImuModel imu;
   if (by_class) imu = read_class(section, std::string(classes[*by_class]));
+  if (part) imu = read_part(section, *part);
   if (file) imu = read_model_file(section, folder, *file);
   if (is_inline) imu = {"scene's own", read_imu_model(section)};
   apply_bias(section, imu.model);
@@ -222,6 +241,7 @@ HorizontalBudget read_budget(TomlSection& section) {
   HorizontalBudget budget;
   budget.metric = chosen(section, "metric", kHorizontalMetrics).value_or(budget.metric);
   set(section, kLimit, budget.limit_m);
+  set(section, kLast, budget.last_s);
   return budget;
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "leeway/error.hpp"
+#include "leeway/sim/recorded_trajectory.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "leeway/sim/waypoints.hpp"
 #include "scene_sections.hpp"
@@ -39,6 +40,9 @@ constexpr Quantity kInitialRest{"initial_rest", kTimes, zero_or(0.1, 1e5)};
 constexpr Quantity kStop{"stop", kTimes, zero_or(0.1, 1e5)};
 constexpr Quantity kAcceleration{"acceleration", kAccelerations, between(1e-3, 50.0)};
 constexpr Quantity kLateral{"lateral_acceleration", kAccelerations, between(1e-3, 50.0)};
+constexpr Quantity kSmoothing{"smoothing", kTimes, between(0.01, 100.0)};
+constexpr Quantity kMaxGap{"max_gap", kTimes, between(0.01, 1e4)};
+constexpr Quantity kMinSpeed{"min_speed", kSpeeds, between(0.01, 100.0)};
 constexpr Quantity kTurnRadius{"turn_radius", kLengths, between(0.3, 1e5)};
 
 void set_origin(TomlSection& section, Geodetic& origin) {
@@ -169,17 +173,40 @@ Trajectory read_waypoints(TomlSection& section, std::optional<double> duration_s
   }
 }
 
-constexpr std::array<std::string_view, 6> kTypes{"static",      "straight", "circle",
-                                                 "square_loop", "car",      "waypoints"};
+/// The recording, or its beginning.
+Trajectory read_recorded(TomlSection& section, const std::filesystem::path& folder,
+                         std::optional<double> duration_s) {
+  RecordedParameters p;
+  p.file = folder / section.required(section.text("file"));
+  set(section, kSmoothing, p.smoothing_s);
+  set(section, kMaxGap, p.max_gap_s);
+  set(section, kMinSpeed, p.min_speed_mps);
+  Trajectory trajectory;
+  try {
+    trajectory = recorded_trajectory(p);
+  } catch (const Error& error) {
+    section.fail_at("file", std::string("cannot be used: ") + error.what());
+  }
+  if (duration_s.value_or(0.0) > trajectory.duration_s) {
+    section.fail_at("file", fmt::format("ends after {:.9g} s, before the scene's end at {:.9g} s",
+                                        trajectory.duration_s, *duration_s));
+  }
+  trajectory.duration_s = duration_s.value_or(trajectory.duration_s);
+  return trajectory;
+}
+
+constexpr std::array<std::string_view, 7> kTypes{"static", "straight",  "circle",  "square_loop",
+                                                 "car",    "waypoints", "recorded"};
 constexpr std::array kEndless{&read_static, &read_straight, &read_circle, &read_square_loop,
                               &read_car};
 
 }  // namespace
 
-Trajectory read_trajectory(TomlSection& section, const std::filesystem::path&,
+Trajectory read_trajectory(TomlSection& section, const std::filesystem::path& folder,
                            std::optional<double> duration_s) {
   const std::size_t type = section.required(section.choice("type", kTypes));
-  if (type >= kEndless.size()) return read_waypoints(section, duration_s);
+  if (kTypes[type] == "waypoints") return read_waypoints(section, duration_s);
+  if (kTypes[type] == "recorded") return read_recorded(section, folder, duration_s);
   return kEndless[type](section, duration_s.value_or(kDefaultDurationS));
 }
 

@@ -80,7 +80,7 @@ std::optional<double> TomlValue::as_written() const {
   return {};
 }
 
-std::string TomlValue::text() const { return in_quotes(key()) + " = " + text_of(*as_written()); }
+std::string TomlValue::text() const { return text_of(as_written().value_or(NAN)); }
 
 double TomlValue::number(std::string_view otherwise) const {
   const double si = unit_ != nullptr ? unit_->si : 1.0;
@@ -243,17 +243,21 @@ void TomlSection::fail_at(std::string_view key, const std::string& what) const {
   document_.fail(node != nullptr ? node->source() : table_.source(), in_quotes(key) + " " + what);
 }
 
+bool TomlSection::is_declared(std::string_view key) const {
+  return std::any_of(declared_.begin(), declared_.end(), [key](const Declared& d) {
+    return std::find(d.keys.begin(), d.keys.end(), key) != d.keys.end();
+  });
+}
+
 void TomlSection::fail_missing() const {
   const Declared& wanted = declared_.back();
-  const std::string owner = name_.empty() ? "the file" : "[" + name_ + "]";
+  const std::string& first = wanted.keys.front();
   for (const auto& [key, node] : table_) {
-    const std::size_t distance = edit_distance(key.str(), wanted.keys.front());
-    const bool unread = std::none_of(declared_.begin(), declared_.end(), [&key](const auto& d) {
-      return std::find(d.keys.begin(), d.keys.end(), key.str()) != d.keys.end();
-    });
-    const bool is_near = key.str() == wanted.name || 3 * distance <= wanted.keys.front().size();
-    if (unread && is_near) fail_unknown(key);
+    const bool is_near =
+        key.str() == wanted.name || 3 * edit_distance(key.str(), first) <= first.size();
+    if (is_near && !is_declared(key.str())) fail_unknown(key);
   }
+  const std::string owner = name_.empty() ? "the file" : "[" + name_ + "]";
   fail(owner + " needs " + joined(wanted.keys, " or "));
 }
 
@@ -276,9 +280,8 @@ std::vector<std::string_view> TomlSection::keys() const {
 }
 
 void TomlSection::finish() const {
-  const std::vector<std::string_view> known = keys();
   for (const auto& [key, node] : table_) {
-    if (std::find(known.begin(), known.end(), key.str()) == known.end()) fail_unknown(key);
+    if (!is_declared(key.str())) fail_unknown(key);
   }
 }
 

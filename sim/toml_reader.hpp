@@ -63,7 +63,7 @@ class TomlValue {
       : document_(&document), key_(&key), quantity_(quantity), unit_(unit), node_(&node) {}
 
   std::string_view key() const { return key_->str(); }
-  std::string text() const;  ///< of a number: "'bias_sigma_mg' = 5"
+  std::string text() const;  ///< of a number that is one, as messages show it
   const Quantity& quantity() const { return quantity_; }
   const Unit* unit() const { return unit_; }  ///< null: a quantity without one
   bool is_array() const { return node_->is_array(); }
@@ -137,6 +137,7 @@ class TomlSection {
   };
 
   const toml::node* declare(std::string_view key);
+  bool is_declared(std::string_view key) const;
   [[noreturn]] void fail_missing() const;
   [[noreturn]] void fail_unknown(const toml::key& key) const;
   std::vector<std::string_view> keys() const;

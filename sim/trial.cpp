@@ -17,7 +17,6 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kScoredS = 480.0;
 constexpr double kDivergedSigmas = 10.0;
 
 [[noreturn]] void refuse(const std::string& what) { throw Error("Monte Carlo trial: " + what); }
@@ -170,7 +169,7 @@ TrialPlan::TrialPlan(const Scene& scene, std::optional<double> score_last_s, int
     : scene_(checked(scene)),
       increments_(scene.trajectory, scene.imu_rate_hz, scene.duration_s, threads),
       initial_(initial_sigma(scene)) {
-  const double last_s = score_last_s.value_or(std::max(kScoredS, 2.0 * scene.gnss.interval_s));
+  const double last_s = score_last_s.value_or(scored_part_s(scene));
   const auto epoch = [&](double t_s) {
     return static_cast<std::size_t>(std::llround(t_s * scene.imu_rate_hz)) - 1;
   };

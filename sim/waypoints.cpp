@@ -20,6 +20,10 @@ constexpr double kFarthestM = 7e6;
 constexpr double kSlowestMps = 0.01;
 constexpr double kFastestMps = 1e4;
 
+// A small corner would be turned in no time by its radius alone.
+constexpr double kShortestTurnS = 1.0;
+constexpr double kShortestBankedTurnS = 3.0;  // rolls in and out
+
 void require(double value, const std::string& field, double low, double high) {
   if (value >= low && value <= high) return;
   std::ostringstream message;
@@ -95,7 +99,8 @@ std::vector<Corner> Route::corners(const WaypointParameters& p) const {
   for (std::size_t k = 0; k < p.waypoints.size(); ++k) {
     const double v_mps = corner_speeds_mps_[k];
     corners.push_back({p.waypoints[k].position,
-                       p.turn_radius_m.value_or(v_mps * v_mps / p.lateral_acceleration_mps2)});
+                       p.turn_radius_m.value_or(v_mps * v_mps / p.lateral_acceleration_mps2),
+                       v_mps * (p.banks ? kShortestBankedTurnS : kShortestTurnS)});
   }
   return corners;
 }

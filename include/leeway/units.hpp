@@ -70,6 +70,9 @@ inline constexpr Unit kUgPerSqrtHz = step("ug/sqrt(Hz)", "ug_per_sqrt_hz", 1.0, 
 inline constexpr Unit kMpsPerSqrtH =
     step("m/s/sqrt(h)", "mps_per_sqrt_h", 1.0, 60.0, kMps2PerSqrtHz);
 
+inline constexpr Unit kFtpsPerSqrtH =
+    step("ft/s/sqrt(h)", "ftps_per_sqrt_h", 0.3048, 1.0, kMpsPerSqrtH);
+
 // Gyros.
 inline constexpr Unit kRadps = in_si("rad/s", "radps");
 inline constexpr Unit kDegPerS = step("deg/s", "deg_per_s", kRadPerDeg, 1.0, kRadps);
@@ -79,8 +82,8 @@ inline constexpr Unit kDpsPerSqrtHz =
     step("dps/sqrt(Hz)", "dps_per_sqrt_hz", kRadPerDeg, 1.0, kRadpsPerSqrtHz);
 inline constexpr Unit kDegPerSqrtH =
     step("deg/sqrt(h)", "deg_per_sqrt_h", 1.0, 60.0, kDpsPerSqrtHz);
-inline constexpr Unit kDegPerHPerSqrtHz =
-    step("deg/h/sqrt(Hz)", "deg_per_h_per_sqrt_hz", 1.0, 3600.0, kDpsPerSqrtHz);
+inline constexpr Unit kMdpsPerSqrtHz =
+    step("mdps/sqrt(Hz)", "mdps_per_sqrt_hz", 1.0, 1e3, kDpsPerSqrtHz);
 inline constexpr Unit kRadpsPerMps2 = in_si("rad/s/(m/s^2)", "radps_per_mps2");
 inline constexpr Unit kRadpsPerG = step("rad/s/g", "radps_per_g", 1.0, kG, kRadpsPerMps2);
 inline constexpr Unit kDegPerSPerG =
@@ -111,13 +114,14 @@ inline constexpr std::array kAll{kS,
                                  kMgPerSqrtHz,
                                  kUgPerSqrtHz,
                                  kMpsPerSqrtH,
+                                 kFtpsPerSqrtH,
                                  kRadps,
                                  kDegPerS,
                                  kDegPerH,
                                  kRadpsPerSqrtHz,
                                  kDpsPerSqrtHz,
+                                 kMdpsPerSqrtHz,
                                  kDegPerSqrtH,
-                                 kDegPerHPerSqrtHz,
                                  kRadpsPerMps2,
                                  kRadpsPerG,
                                  kDegPerSPerG,

@@ -182,7 +182,7 @@ void add_campaign_command(CLI::App& program, int& exit_code) {
                   "keep finished trials here, and do not run again those that are")
       ->type_name("FILE");
   app->add_option("--score-last-s", c.score_last_s,
-                  "score fixes this close to the scene's end, s (default: 480 or two intervals)")
+                  "score fixes this close to the scene's end, s (default: as the scene's budget)")
       ->check(CLI::PositiveNumber);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(

@@ -35,10 +35,13 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExitCodes);
   int exit_code = kSuccess;
+  add_interval_command(program, exit_code);
+  add_analyze_command(program, exit_code);
   add_campaign_command(program, exit_code);
   add_drift_command(program, exit_code);
   add_simulate_command(program, exit_code);
   add_fuse_command(program, exit_code);
+  add_imu_command(program, exit_code);
   try {
     refuse_unknown_command(program, argc, argv);
     program.parse(argc, argv);

@@ -1,11 +1,13 @@
 #include "options.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "leeway/imu_class.hpp"
+#include "leeway/sim/imu_catalogue.hpp"
 #include "leeway/sim/imu_model_file.hpp"
 
 namespace leeway::cli {
@@ -48,33 +50,52 @@ template CLI::Option* add_numbers<2>(CLI::App&, const std::string&, const std::s
 template CLI::Option* add_numbers<3>(CLI::App&, const std::string&, const std::string&,
                                      std::optional<Eigen::Vector3d>&, const std::string&);
 
+CLI::Option* add_range_option(CLI::App& app, std::string& range) {
+  std::vector<std::string> ends;
+  for (const RangeEnd end : kRangeEnds) ends.emplace_back(name(end));
+  return app
+      .add_option("--range", range,
+                  "where in the range of a Table 1 class: its ends, or the geometric mean")
+      ->check(CLI::IsMember(ends))
+      ->capture_default_str();
+}
+
+bool is_imu_class(const std::string& imu) {
+  return imu == kMems || std::any_of(kImuClasses.begin(), kImuClasses.end(),
+                                     [&imu](ImuClass c) { return name(c) == imu; });
+}
+
 void add_imu_options(CLI::App& app, ImuChoice& choice) {
   std::vector<std::string> names{std::string(kMems)};
   for (const ImuClass c : kImuClasses) names.emplace_back(name(c));
-  std::vector<std::string> ends;
-  for (const RangeEnd end : kRangeEnds) ends.emplace_back(name(end));
   CLI::Option* by_class =
       app.add_option("--imu-class", choice.name,
                      "IMU error model: a car-grade MEMS part, or a class of the source paper's "
                      "Table 1")
           ->check(CLI::IsMember(names))
           ->capture_default_str();
-  CLI::Option* range =
-      app.add_option("--range", choice.range,
-                     "where in the range of a Table 1 class: its ends, or the geometric mean")
-          ->check(CLI::IsMember(ends))
-          ->capture_default_str()
-          ->needs(by_class);
+  CLI::Option* range = add_range_option(app, choice.range)->needs(by_class);
+  CLI::Option* by_part =
+      app.add_option("--imu-part", choice.part,
+                     "IMU error model: a real part, STIM300 for one (leeway imu lists them)")
+          ->type_name("NAME")
+          ->excludes(by_class)
+          ->excludes(range);
   app.add_option("--imu-model", choice.model_file,
                  "IMU error model from a TOML file (docs/guide/cli.md lists its keys)")
       ->type_name("FILE")
       ->excludes(by_class)
-      ->excludes(range);
+      ->excludes(range)
+      ->excludes(by_part);
 }
 
 NamedImu imu_of(const ImuChoice& choice) {
   if (!choice.model_file.empty()) {
     return {choice.model_file.string(), sim::read_imu_model(choice.model_file)};
+  }
+  if (!choice.part.empty()) {
+    const sim::ImuPart& part = sim::imu_part(choice.part);
+    return {std::string(part.name), sim::imu_model(part)};
   }
   if (choice.name == kMems) return {choice.name, automotive_mems_model()};
   return {choice.name + "/" + choice.range,

@@ -20,14 +20,21 @@ CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::stri
                          std::optional<Eigen::Matrix<double, N, 1>>& value,
                          const std::string& description);
 
-/// Which IMU error model: a class with its range end, or a file.
+/// Which IMU error model: a class with its range end, a part of the catalogue, or a file.
 struct ImuChoice {
   std::string name{"automotive-mems"};
   std::string range{"mid"};
+  std::string part{};
   std::filesystem::path model_file{};
 };
 
 void add_imu_options(CLI::App& app, ImuChoice& choice);
+
+/// --range alone.
+CLI::Option* add_range_option(CLI::App& app, std::string& range);
+
+/// Whether the name is of automotive-mems or a Table 1 class.
+bool is_imu_class(const std::string& name);
 
 /// A model with the name the output calls it by.
 struct NamedImu {
@@ -35,7 +42,7 @@ struct NamedImu {
   ImuErrorModel model{};
 };
 
-/// @throws Error when the file is not a model, or a range was asked of a model without one.
+/// @throws Error when the file is not a model or the part is not in the catalogue.
 NamedImu imu_of(const ImuChoice& choice);
 
 /// Three numbers, or null.

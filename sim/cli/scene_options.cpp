@@ -1,5 +1,8 @@
 #include "scene_options.hpp"
 
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
 #include "leeway/sim/bias_model.hpp"
@@ -16,9 +19,21 @@ std::vector<std::string> names_of(const Values& values) {
   return names;
 }
 
-/// --range says where in a class; a name that is none has no range to say.
+/// A class, which --range is about, or a part of the catalogue.
 NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
-  return imu_of({.name = wanted, .range = choice.range});
+  ImuChoice imu;
+  if (is_imu_class(wanted)) {
+    imu.name = wanted;
+    if (!choice.range.empty()) imu.range = choice.range;
+    return imu_of(imu);
+  }
+  imu.part = wanted;
+  try {
+    return imu_of(imu);
+  } catch (const Error& error) {
+    throw Error(fmt::format("--imu {}: no class (automotive-mems, {}) and no part: {}", wanted,
+                            fmt::join(names_of(kImuClasses), ", "), error.what()));
+  }
 }
 
 sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, const std::string& bias) {
@@ -64,16 +79,13 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)")
       ->type_name("FILE.toml")
       ->required();
-  CLI::Option* imu =
-      app.add_option("--imu", choice.imus,
-                     "IMU in place of the scene's, for truth and filter: marine, aviation, "
-                     "intermediate, tactical, automotive, automotive-mems; several with commas")
-          ->type_name("NAME")
-          ->delimiter(',');
-  app.add_option("--range", choice.range, "where in the range of a Table 1 class")
-      ->check(CLI::IsMember(names_of(kRangeEnds)))
-      ->capture_default_str()
-      ->needs(imu);
+  app.add_option("--imu", choice.imus,
+                 "IMU in place of the scene's, for truth and filter: marine, aviation, "
+                 "intermediate, tactical, automotive, automotive-mems, or a part of the "
+                 "catalogue; several with commas")
+      ->type_name("NAME")
+      ->delimiter(',');
+  add_range_option(app, choice.range);
   app.add_option("--bias", choice.bias,
                  "what the biases of a Table 1 class do after turn-on: stay, or wander with a "
                  "correlation time of an hour")
@@ -93,6 +105,9 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
 }
 
 std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
+  if (choice.imus.empty() && !choice.range.empty()) {
+    throw Error("--range " + choice.range + " is of a Table 1 class: name it with --imu");
+  }
   const sim::Scene base = changed_scene(choice);
   std::vector<sim::Scene> scenes;
   for (const std::string& imu : choice.imus) {
@@ -122,6 +137,7 @@ Json scene_json(const sim::Scene& scene) {
           {"gate_probability", scene.filter.gate_probability},
           {"metric", name(scene.budget.metric)},
           {"limit_m", scene.budget.limit_m},
+          {"last_s", scene.budget.last_s},
           {"trials", scene.trials},
           {"first_seed", scene.first_seed}};
 }

@@ -16,7 +16,7 @@ namespace leeway::cli {
 struct SceneChoice {
   std::filesystem::path file{};
   std::vector<std::string> imus{};  ///< empty: the scene's
-  std::string range{"mid"};         ///< of those that are Table 1 classes
+  std::string range{};              ///< of those that are Table 1 classes; empty: mid
   std::string bias{};               ///< empty: as the scene or the model has it
   std::string metric{};             ///< empty: the scene's
   std::vector<double> limits_m{};   ///< empty: the scene's

@@ -86,6 +86,36 @@ TEST_CASE("a class has biases and noise and no other error") {
   }
 }
 
+TEST_CASE("every class and end of its range is classified as itself") {
+  for (const ImuClass c : kImuClasses) {
+    for (const RangeEnd end : kRangeEnds) {
+      CAPTURE(name(c));
+      CAPTURE(name(end));
+      CHECK(classify(imu_class_model(c, end)).overall == c);
+    }
+  }
+}
+
+TEST_CASE("each quantity is classified on its own, and the worst of them is the class") {
+  ImuErrorModel model = imu_class_model(ImuClass::kAviation, RangeEnd::kMid);
+  model.gyro.bias_sigma = 1e-4;    // nearer to 5e-4 than to 5e-6 by logarithm: ratios 5, 20
+  model.gyro.noise_density = 0.0;  // no noise is the best there is
+  model.accelerometer.noise_density = 140.0 * 9.80665e-6;  // within 100 to 1000 ug
+  ImuClassification c = classify(model);
+  CHECK(c.accelerometer_drift == ImuClass::kAviation);
+  CHECK(c.gyro_drift == ImuClass::kAutomotive);
+  CHECK(c.accelerometer_noise == ImuClass::kTactical);
+  CHECK(c.gyro_noise == ImuClass::kMarine);
+  CHECK(c.overall == ImuClass::kAutomotive);
+  model.gyro.bias_sigma = 4e-5;  // ratios 12.5, 8
+  CHECK(classify(model).gyro_drift == ImuClass::kTactical);
+  CHECK(classify(model).overall == ImuClass::kTactical);
+  // The bias at the start is turn-on and in-run: the wandering part counts as well.
+  model.gyro.bias_sigma = 0.0;
+  model.gyro.in_run = {1e-4, 100.0};
+  CHECK(classify(model).gyro_drift == ImuClass::kAutomotive);
+}
+
 TEST_CASE("an unknown name is refused with the known ones") {
   const auto message_of = [](auto f) -> std::string {
     try {

@@ -390,6 +390,27 @@ TEST_CASE("initial covariance: tilt and heading about the local axes") {
   CHECK(near(P(kBa, kBa), 0.3 * 0.3 + 0.03 * 0.03, 1e-16));
 }
 
+TEST_CASE("mean rate: all there is at first, then exponentially weighted over 5 s") {
+  Ekf ekf(plain_config(), at_equator(), ErrorMatrix::Identity());
+  CHECK(ekf.mean_omega_ib_b_radps().isZero(0.0));
+  constexpr double kStepS = 0.01;
+  Time time = ekf.estimate().nav.time;
+  const auto feed = [&](double rate_radps, int count) {
+    for (int k = 0; k < count; ++k) {
+      time += duration_from_seconds(kStepS);
+      ekf.predict({time, kStepS, {0.0, 0.0, kStepS * rate_radps}, {0.0, 0.0, 0.0}});
+    }
+  };
+  feed(0.2, 1);
+  CHECK(near(ekf.mean_omega_ib_b_radps().z(), 0.2, 1e-15));
+  feed(0.4, 1);
+  CHECK(near(ekf.mean_omega_ib_b_radps().z(), 0.3, 1e-15));
+  feed(0.3, 1000);
+  feed(0.0, 500);
+  // (1 - dt / 5 s)^(5 s / dt): 1/e but for the step.
+  CHECK(near(ekf.mean_omega_ib_b_radps().z(), 0.3 * std::pow(1.0 - kStepS / 5.0, 500.0), 1e-12));
+}
+
 TEST_CASE("an invalid configuration or start is refused: the field, its value, its range") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   struct Case {

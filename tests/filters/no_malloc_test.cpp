@@ -6,7 +6,9 @@
 #include <string>
 
 #include "filters/recording.hpp"
+#include "leeway/filters/horizontal.hpp"
 #include "leeway/filters/navigator.hpp"
+#include "leeway/filters/time_to_limit.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace leeway {
@@ -63,6 +65,27 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
       CHECK(fused == 2);
       CHECK(s.nav.time == fix.time);
     }
+  }
+  SUBCASE("leeway, by every metric, short and long, straight and turning") {
+    const Ekf turning = [&] {
+      Ekf ekf(config, start, P);
+      for (std::size_t k = 0; k < 50; ++k) ekf.predict(log.imu[k]);
+      return ekf;
+    }();
+    const Ekf straight(config, start, P);
+    const NoMalloc guard;
+    double sum_s = 0.0;
+    for (const Ekf* ekf : {&straight, &turning}) {
+      for (const double limit_m : {8.0, 50.0, 1e5, 1e100}) {
+        sum_s += time_to_limit(*ekf, limit_m).time_s;
+        for (const HorizontalMetric metric : kHorizontalMetrics) {
+          sum_s += time_to_limit(*ekf, limit_m, metric).time_s;
+        }
+      }
+    }
+    sum_s += horizontal_radius_m(Eigen::Matrix2d::Identity(), 0.95);
+    CHECK(guard.count() == 0);
+    CHECK(sum_s > 0.0);
   }
   SUBCASE("push: alignment, fixes between samples, bad data, a gap") {
     Navigator navigator{NavigatorConfig{}};

@@ -188,6 +188,30 @@ TEST_CASE("accumulated Phi is the product of its steps") {
   CHECK((dense(Phi).array() == 0.0).cwiseEqual(product.array() == 0.0).all());
 }
 
+TEST_CASE("compose is the product of the dense matrices") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    // Two long and different transitions, so that no block is close to zero or to the identity.
+    const auto spread = [](std::uint64_t first) {
+      Transition Phi;
+      for (std::uint64_t k = 0; k < 5; ++k) {
+        ErrorDynamics d = random_dynamics(first + k);
+        d.dt_s = 20.0;
+        d.dv_f_e_mps *= 2000.0;
+        advance(Phi, d);
+      }
+      return Phi;
+    };
+    const Transition earlier = spread(100 * seed);
+    const Transition later = spread(100 * seed + 50);
+    const Transition both = compose(later, earlier);
+    CHECK(near(both.dt_s, 200.0, 1e-12));
+    const ErrorMatrix product = dense(later) * dense(earlier);
+    CHECK(worst_block(dense(both), product) < 1e-14);  // rounding of a sum of 15 products
+    CHECK((dense(both).array() == 0.0).cwiseEqual(product.array() == 0.0).all());
+  }
+}
+
 TEST_CASE("Phi of a manoeuvre against the nonlinear strapdown, with an error that falls as dt^2") {
   const sim::Trajectory trajectory = sim::manoeuvre_car();
   Estimate start;

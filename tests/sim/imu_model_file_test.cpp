@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <string>
 
@@ -147,6 +148,56 @@ TEST_CASE("mistakes are refused with line, column and key") {
     CAPTURE(message);
     CHECK(contains(message, std::string("model.toml") + c.where));
     CHECK(contains(message, c.named));
+  }
+}
+
+TEST_CASE("spreads from unit to unit") {
+  const ImuErrorModel m = model_of(R"(
+[accelerometer]
+scale_sigma_ppm = 300
+misalignment_sigma_mrad = 0.5
+[gyro]
+scale_sigma_percent = 0.1
+misalignment_sigma_deg = 0.05
+g_sensitivity_sigma_deg_per_h_per_g = 2
+)");
+  CHECK(near(m.accelerometer.scale_sigma, 3e-4, 1e-19));
+  CHECK(near(m.accelerometer.misalignment_sigma_rad, 5e-4, 1e-18));
+  CHECK(near(m.gyro.scale_sigma, 1e-3, 1e-18));
+  CHECK(near(m.gyro.misalignment_sigma_rad, 0.05 * kDeg, 1e-17));
+  CHECK(near(m.G_g_sigma_radps_per_mps2, 2.0 * kDeg / 3600.0 / 9.80665, 1e-21));
+  CHECK(m.accelerometer.M == Eigen::Matrix3d::Identity());
+}
+
+TEST_CASE("a value that no real sensor has is refused with the unit that was likely meant") {
+  const struct {
+    const char* text;
+    const char* named;
+  } cases[] = {
+      {"[gyro]\nbias_sigma = 5\n", "it needs its unit: bias_sigma_deg_per_h"},
+      {"[accelerometer]\nnoise = 60\n", "it needs its unit: noise_ug_per_sqrt_hz, noise_mps_"},
+      {"[gyro]\nbias_sigma_deg_per_s = 25\n", "0 to 10; did you mean 'bias_sigma_deg_per_h'?"},
+      {"[gyro]\nbias_sigma_radps = 2\n", "'bias_sigma_deg_per_h' or 'bias_sigma_deg_per_s'?"},
+      {"[gyro]\nnoise_deg_per_sqrt_h = 1e-6\n", "must be 0, or at least 1e-05"},
+      {"[gyro]\nnoise_dps_per_sqrt_hz = 2\n", "did you mean 'noise_deg_per_sqrt_h'?"},
+      {"[accelerometer]\nnoise_mps_per_sqrt_h = 35\n", "did you mean 'noise_ug_per_sqrt_hz'?"},
+      {"[accelerometer]\nnoise_ug_per_sqrt_hz = 0.03\n", "did you mean 'noise_mps_per_sqrt_h'?"},
+      {"[accelerometer]\nbias_sigma_ug = 0.05\n", "'bias_sigma_mps2' or 'bias_sigma_mg'?"},
+      {"[accelerometer]\nscale_sigma_ppm = 0.05\n", "did you mean 'scale_sigma_percent'?"},
+      {"[gyro]\nscale_sigma_percent = 300\n", "did you mean 'scale_sigma_ppm'?"},
+      {"# nothing\n", "needs [accelerometer] or [gyro]"},
+  };
+  for (const auto& c : cases) {
+    const std::string message = refusal(c.text);
+    CAPTURE(std::string(c.text));
+    CAPTURE(message);
+    CHECK(contains(message, c.named));
+  }
+}
+
+TEST_CASE("the examples are models") {
+  for (const char* name : {"automotive-mems.toml", "tactical-complete.toml"}) {
+    CHECK_NOTHROW(read_imu_model(std::filesystem::path(LEEWAY_MODELS_DIR) / name));
   }
 }
 

@@ -204,6 +204,64 @@ TEST_CASE("turn-on biases have their sigma about the known part, and are what is
   CHECK(is_chi_square_mean(gyro_ratio, 3 * trials));
 }
 
+TEST_CASE("scale factors, misalignments and g-sensitivity have their spread from unit to unit") {
+  ImuErrorModel model;
+  model.accelerometer.scale_sigma = 1e-3;
+  model.accelerometer.misalignment_sigma_rad = 2e-3;
+  model.gyro.scale_sigma = 5e-4;
+  model.gyro.misalignment_sigma_rad = 3e-3;
+  model.G_g_sigma_radps_per_mps2 = 1e-4;
+  // What a sensor reports of 1 m/s^2 and 1 rad/s along one axis after the other: M and G, column by
+  // column, one unit for each of the trials 1..N.
+  const int trials = 2000;
+  double scale_a = 0.0, scale_g = 0.0, skew_a = 0.0, skew_g = 0.0, g_sensitivity = 0.0;
+  for (std::uint32_t trial = 1; trial <= trials; ++trial) {
+    ImuErrorSimulator simulator(model, Random(1, trial, kImuStream));
+    for (int axis = 0; axis < 3; ++axis) {
+      ImuIncrement force;
+      force.dt_s = 1.0;
+      ImuIncrement turn = force;
+      force.dv_b_mps = Eigen::Vector3d::Unit(axis);
+      turn.dtheta_b_rad = Eigen::Vector3d::Unit(axis);
+      const ImuIncrement forced = simulator.measure(force);
+      const Eigen::Vector3d error_a = forced.dv_b_mps - force.dv_b_mps;
+      const Eigen::Vector3d error_g = simulator.measure(turn).dtheta_b_rad - turn.dtheta_b_rad;
+      scale_a += error_a[axis] * error_a[axis];
+      scale_g += error_g[axis] * error_g[axis];
+      skew_a += error_a.squaredNorm() - error_a[axis] * error_a[axis];
+      skew_g += error_g.squaredNorm() - error_g[axis] * error_g[axis];
+      g_sensitivity += forced.dtheta_b_rad.squaredNorm();
+    }
+  }
+  CHECK(is_chi_square_mean(scale_a / (3 * trials) / 1e-6, 3 * trials));
+  CHECK(is_chi_square_mean(scale_g / (3 * trials) / 2.5e-7, 3 * trials));
+  CHECK(is_chi_square_mean(skew_a / (6 * trials) / 4e-6, 6 * trials));
+  CHECK(is_chi_square_mean(skew_g / (6 * trials) / 9e-6, 6 * trials));
+  CHECK(is_chi_square_mean(g_sensitivity / (9 * trials) / 1e-8, 9 * trials));
+}
+
+TEST_CASE("spreads of zero draw nothing: the numbers are those of a model that has no spreads") {
+  ImuErrorModel model;
+  model.accelerometer.bias_sigma = 0.5;
+  model.accelerometer.noise_density = 0.02;
+  model.gyro.bias_sigma = 0.01;
+  model.gyro.noise_density = 0.001;
+  ImuErrorSimulator simulator(model, Random(7));
+  ImuIncrement nothing;
+  nothing.dt_s = 0.25;
+  const ImuIncrement reported = simulator.measure(nothing);
+  // Bias, start of the in-run drift, of each triad; then the noise of the first increment.
+  Random random(7);
+  const Eigen::Vector3d b_a = 0.5 * random.normal3();
+  random.normal3();
+  const Eigen::Vector3d b_g = 0.01 * random.normal3();
+  random.normal3();
+  const Eigen::Vector3d dv = 0.25 * b_a + 0.02 * 0.5 * random.normal3();
+  const Eigen::Vector3d dtheta = 0.25 * b_g + 0.001 * 0.5 * random.normal3();
+  CHECK(near(reported.dv_b_mps, dv, 1e-16));  // a rounding of 0.5
+  CHECK(near(reported.dtheta_b_rad, dtheta, 1e-18));
+}
+
 TEST_CASE("white noise has its density at 1 s by the Allan variance, at any sampling rate") {
   ImuErrorModel model;
   model.accelerometer.noise_density = 0.02;

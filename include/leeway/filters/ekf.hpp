@@ -81,6 +81,13 @@ class Ekf {
   ErrorMatrix covariance() const;
 
   const EkfConfig& config() const { return config_; }
+  const ProcessNoise& noise() const { return noise_; }
+
+  /// Measured rate (bias not removed), its mean over the last kMeanRateS: the present motion
+  /// without the vibration and steering of single samples. Exponentially weighted; zero before any
+  /// data.
+  const Eigen::Vector3d& mean_omega_ib_b_radps() const { return mean_omega_ib_b_radps_; }
+  static constexpr double kMeanRateS = 5.0;
 
  private:
   void flush();
@@ -97,6 +104,8 @@ class Ekf {
   ImuHistory history_{};
   std::optional<Time> last_position_fix_{};
   Eigen::Vector3d omega_ib_b_radps_{Eigen::Vector3d::Zero()};  // of the newest increment
+  Eigen::Vector3d mean_omega_ib_b_radps_{Eigen::Vector3d::Zero()};
+  double mean_rate_window_s_{0.0};  // grows to kMeanRateS: the first mean is over all there is
 };
 
 /// P from sigmas: tilt and heading about the axes of north-east-down at the estimate, bias sigmas

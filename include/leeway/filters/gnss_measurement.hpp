@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "leeway/filters/error_state.hpp"
 #include "leeway/gnss_fix.hpp"
@@ -25,6 +26,14 @@ struct GnssMeasurement {
 Eigen::Vector3d antenna_position_e(const Estimate& estimate, const Eigen::Vector3d& lever_arm_b_m);
 Eigen::Vector3d antenna_velocity_e(const Estimate& estimate, const Eigen::Vector3d& lever_arm_b_m,
                                    const Eigen::Vector3d& omega_ib_b_radps);
+
+/// What the position of a fix is weighted by, as a factor on its innovation over sigma, when its
+/// error is correlated with that of a fix dt_s earlier: of a Gauss-Markov error with
+/// a = exp(-dt / correlation), each fix counts as white noise of variance R (1 + a) / (1 - a).
+inline double gnss_position_weight(double dt_s, double correlation_s) {
+  // (1 - a) / (1 + a) is the tanh; a second fix at the same time repeats the first: weight 0.
+  return correlation_s > 0.0 ? std::sqrt(std::tanh(0.5 * dt_s / correlation_s)) : 1.0;
+}
 
 /// Linearizes the fix about the estimate. @pre is_usable(fix), fix.time is the estimate's time.
 /// Source: Groves (2013) (14.104)-(14.111), ECEF form, signs by error_state.hpp.

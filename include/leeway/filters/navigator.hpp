@@ -10,6 +10,7 @@
 
 #include "leeway/filters/alignment.hpp"
 #include "leeway/filters/ekf.hpp"
+#include "leeway/filters/time_to_limit.hpp"
 
 namespace leeway {
 
@@ -61,6 +62,12 @@ class Navigator {
   /// At the newest IMU time. @pre aligned().
   Solution solution() const;
   const Ekf& filter() const { return *filter_; }
+
+  /// How long from the newest IMU time, without another fix, the horizontal error stays within the
+  /// limit with the given probability (time_to_limit); 0 before alignment.
+  TimeToLimit leeway(double limit_m, double probability = 0.95) const {
+    return filter_ ? time_to_limit(*filter_, limit_m, probability) : TimeToLimit{};
+  }
 
   /// The newest fix that reached the filter; dof 0 before the first.
   const UpdateReport& last_update() const { return last_update_; }

@@ -38,6 +38,9 @@ struct ErrorDynamics {
 /// signs by error_state.hpp.
 void advance(Transition& Phi, const ErrorDynamics& step);
 
+/// Phi over two intervals in a row: later * earlier, block by block.
+Transition compose(const Transition& later, const Transition& earlier);
+
 /// The continuous system matrix, dense. For tests and analysis; advance() does not form it.
 /// @param f_e_mps2  specific force in ECEF
 ErrorMatrix system_matrix(const Eigen::Matrix3d& C_eb, const Eigen::Vector3d& f_e_mps2,

@@ -30,6 +30,7 @@ struct GnssScenario {
 struct HorizontalBudget {
   HorizontalMetric metric{HorizontalMetric::kDrms};
   double limit_m{10.0};
+  double last_s{480.0};  ///< fixes this close to the end of the scene count, as scored_part_s()
 };
 
 struct Scene {
@@ -57,6 +58,10 @@ void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model);
 /// bias over gravity) and gyrocompassing (heading: gyro bias over the horizontal Earth rate, within
 /// 1e-5 rad and 10 deg), at the GNSS's own sigmas of velocity and horizontal position.
 InitialSigma initial_sigma(const Scene& scene);
+
+/// The last part of the scene, whose fixes count: budget.last_s, two fix intervals or a period of
+/// the trajectory, whichever is longest.
+double scored_part_s(const Scene& scene);
 
 /// Times of the fixes that are not in an outage, in (0, duration].
 std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s);

@@ -17,7 +17,8 @@ namespace leeway::sim {
 
 /// The plane that touches the ellipsoid's parallel surface at the origin; axes l: north, east, down
 /// at the origin. It does not follow the Earth's curvature: 1 km away it is 0.08 m higher and its
-/// down is 1.6e-4 rad off the local one.
+/// down is 1.6e-4 rad off the local one. A motion that does follow it is given in the same axes, as
+/// coordinates (waypoints.hpp).
 struct TangentPlane {
   TangentPlane() : TangentPlane(Geodetic{}) {}
   explicit TangentPlane(const Geodetic& at)

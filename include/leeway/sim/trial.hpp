@@ -25,8 +25,8 @@ class TrialPlan {
     bool scored{};
   };
 
-  /// @param score_last_s  fixes that arrive this close to the scene's end are scored; absent: 480 s
-  ///                      or two GNSS intervals, whichever is longer
+  /// @param score_last_s  fixes that arrive this close to the scene's end are scored; absent:
+  ///                      scored_part_s(scene)
   /// @param threads       that compute the true increments; 0: as many as there are processors
   /// @throws Error when the scene is invalid, is shorter than two GNSS intervals, has fixes closer
   /// together than IMU increments, or none to score.

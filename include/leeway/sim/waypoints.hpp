@@ -29,10 +29,10 @@ struct WaypointParameters {
 };
 
 /// Arcs of great ellipses from waypoint to waypoint, at heights above the ellipsoid that change by
-/// smooth steps between turns. A corner is rounded on the inside: the path does not touch a
-/// waypoint where it turns. It is travelled as fast as the speeds and accelerations allow; a stop
-/// is made where the corner's turn begins. The body points along the path, level across it or
-/// banked.
+/// smooth steps between turns. A corner is rounded on the inside, over the turn radius and
+/// at least one second (three when banking): the path does not touch a waypoint where it turns. It
+/// is travelled as fast as the speeds and accelerations allow; a stop is made where the corner's
+/// turn begins. The body points along the path, level across it or banked.
 ///
 /// Height is exact to rounding; speeds, radii and lateral accelerations are within 0.2 % near the
 /// latitude and height of the first waypoint, 0.5 % anywhere. Position, velocity, attitude and

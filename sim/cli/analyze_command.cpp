@@ -1,0 +1,151 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "analysis_files.hpp"
+#include "commands.hpp"
+#include "leeway/sim/covariance_analysis.hpp"
+#include "output.hpp"
+#include "scene_options.hpp"
+
+namespace leeway::cli {
+namespace {
+
+struct AnalyzeOptions {
+  SceneChoice scene{};
+  std::filesystem::path moments{};
+  std::filesystem::path budget{};
+  bool json{false};
+};
+
+std::string optimism(double ratio) {
+  if (std::abs(ratio - 1.0) < 5e-3) return "as honest as it can be";
+  return ratio > 1.0 ? fmt::format("optimistic by x{:.2f}", ratio)
+                     : fmt::format("pessimistic by x{:.2f}", 1.0 / ratio);
+}
+
+void print_sigmas(const sim::CovariancePoint& worst) {
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(worst.r_e_m)).transpose();
+  Table table({"<1 sigma", "north", "east", "down"});
+  const auto add = [&](const char* what, const ErrorMatrix& P, int block, double unit) {
+    const Eigen::Matrix3d P_n = C_ne * P.block<3, 3>(block, block) * C_ne.transpose();
+    std::vector<std::string> cells{what};
+    for (int i = 0; i < 3; ++i) cells.push_back(number(std::sqrt(P_n(i, i)) / unit, 4));
+    table.add(std::move(cells));
+  };
+  add("position claimed, m", worst.claimed, kDr, 1.0);
+  add("position true, m", worst.truth, kDr, 1.0);
+  add("velocity claimed, m/s", worst.claimed, kDv, 1.0);
+  add("velocity true, m/s", worst.truth, kDv, 1.0);
+  add("attitude claimed, deg", worst.claimed, kPsi, kRadPerDeg);
+  add("attitude true, deg", worst.truth, kPsi, kRadPerDeg);
+  table.print();
+}
+
+void print_budget(sim::ErrorBudget budget) {
+  std::sort(budget.begin(), budget.end(), [](const auto& a, const auto& b) {
+    return horizontal_m2(a.mean_sq_n_m2) > horizontal_m2(b.mean_sq_n_m2);
+  });
+  const Eigen::Matrix3d sum = total(budget);
+  Table table({"<source", "north, m", "east, m", "down, m", "horizontal, m", "share, %"});
+  const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
+    const double m2 = horizontal_m2(P_n);
+    std::vector<std::string> cells{std::string(source)};
+    for (int i = 0; i < 3; ++i) cells.push_back(number(std::sqrt(std::max(P_n(i, i), 0.0)), 3));
+    cells.push_back(number(std::sqrt(m2), 3));
+    cells.push_back(number(100.0 * m2 / horizontal_m2(sum), 2));
+    table.add(std::move(cells));
+  };
+  for (const sim::BudgetLine& line : budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  add("total", sum);
+  table.print();
+}
+
+void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
+  fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
+             scene.imu_name, scene.gnss.interval_s, scene.duration_s);
+  fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
+             leeway::name(scene.budget.metric), r.window_s, r.true_m, r.worst_s);
+  fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
+  if (r.settled) {
+    fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);
+  } else {
+    fmt::print("Still settling at the scene's end, {:g} s.\n\n", r.settled_s);
+  }
+  print_sigmas(r.worst);
+  fmt::print("\nWhere the true error comes from\n");
+  print_budget(r.budget);
+}
+
+Json results_json(const sim::CovarianceAnalysis& r) {
+  Json budget = Json::array();
+  const double sum_m2 = horizontal_m2(total(r.budget));
+  for (const sim::BudgetLine& line : r.budget) {
+    budget.push_back({{"source", sim::name(line.source)},
+                      {"north_m2", line.mean_sq_n_m2(0, 0)},
+                      {"east_m2", line.mean_sq_n_m2(1, 1)},
+                      {"down_m2", line.mean_sq_n_m2(2, 2)},
+                      {"horizontal_share", horizontal_m2(line.mean_sq_n_m2) / sum_m2}});
+  }
+  return {{"true_m", r.true_m},
+          {"claimed_m", r.claimed_m},
+          {"optimistic_by", r.true_m / r.claimed_m},
+          {"true_drms_m", r.true_drms_m},
+          {"claimed_drms_m", r.claimed_drms_m},
+          {"worst_s", r.worst_s},
+          {"window_s", r.window_s},
+          {"fixes", r.fixes},
+          {"settled", r.settled},
+          {"settled_s", r.settled ? Json(r.settled_s) : Json()},
+          {"budget", std::move(budget)}};
+}
+
+int run(const AnalyzeOptions& options) {
+  const sim::Scene scene = scene_of(options.scene);
+  std::optional<MomentWriter> moments;
+  if (!options.moments.empty()) writing([&] { moments.emplace(options.moments); });
+  Progress progress("analyze");
+  sim::CovarianceConfig config;
+  config.by_source = true;
+  if (moments || progress.visible()) {
+    config.observer = [&](const sim::CovariancePoint& point) {
+      if (moments) writing([&] { moments->write(point); });
+      progress.show(point.t_s / scene.duration_s);
+    };
+  }
+  const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
+  if (moments) writing([&] { moments->close(); });
+  if (!options.budget.empty()) write_file(options.budget, budget_csv(result.budget));
+  if (options.json) {
+    print_json("analyze", scene_json(scene), results_json(result));
+  } else {
+    print_report(scene, result);
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_analyze_command(CLI::App& program, int& exit_code) {
+  CLI::App* app = program.add_subcommand(
+      "analyze", "What the filter claims in a scene, what is true, and where the error comes from");
+  const auto options = std::make_shared<AnalyzeOptions>();
+  add_scene_options(*app, options->scene);
+  app->add_option("--out", options->moments,
+                  "write claimed and true sigmas at every moment of the scene as CSV")
+      ->type_name("FILE");
+  app->add_option("--budget", options->budget, "write the error budget as CSV")->type_name("FILE");
+  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
+  app->footer(
+      "Example:\n"
+      "  leeway analyze --scene docs/examples/scenes/town-car.toml --interval-s 5 --budget "
+      "budget.csv");
+  app->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,92 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "interval_confirm.hpp"
+#include "interval_report.hpp"
+#include "leeway/imu_class.hpp"
+#include "leeway/sim/interval.hpp"
+#include "output.hpp"
+#include "scene_options.hpp"
+
+namespace leeway::cli {
+namespace {
+
+struct IntervalOptions {
+  SceneChoice scene{};
+  int confirm_trials{0};
+  bool json{false};
+};
+
+/// All five classes, unless the command line names IMUs; the scene's own when it is none of them.
+std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
+  if (!choice.imus.empty()) return scenes_of(choice);
+  SceneChoice classes = choice;
+  for (const ImuClass c : kImuClasses) classes.imus.emplace_back(name(c));
+  std::vector<sim::Scene> scenes = scenes_of(classes);
+  SceneChoice as_written = choice;
+  as_written.bias.clear();
+  as_written.range.clear();
+  sim::Scene own = scene_of(as_written);
+  const auto is_class = [&own](ImuClass c) {
+    return own.imu_name.starts_with(std::string(name(c)) + "/");
+  };
+  if (std::none_of(kImuClasses.begin(), kImuClasses.end(), is_class)) {
+    scenes.push_back(std::move(own));
+  }
+  return scenes;
+}
+
+int run(const IntervalOptions& options) {
+  const std::vector<double> limits_m = options.scene.limits_m.empty()
+                                           ? std::vector<double>{1.0, 3.0, 10.0, 30.0, 100.0}
+                                           : options.scene.limits_m;
+  const std::vector<sim::Scene> scenes = scenes_to_solve(options.scene);
+  std::vector<SolvedImu> solved;
+  {
+    Progress progress("interval");
+    for (const sim::Scene& scene : scenes) {
+      const auto done = static_cast<double>(solved.size());
+      const auto all = static_cast<double>(scenes.size());
+      solved.push_back({scene, sim::solve_intervals(scene, limits_m, {}, [&](double fraction) {
+                          progress.show((done + fraction) / all);
+                        })});
+    }
+  }
+  if (options.confirm_trials > 0) confirm(solved, options.confirm_trials);
+  if (options.json) {
+    print_interval_json(solved);
+  } else {
+    print_interval_tables(solved);
+  }
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_interval_command(CLI::App& program, int& exit_code) {
+  CLI::App* app = program.add_subcommand(
+      "interval", "The longest time between fixes for which the error stays within a limit");
+  const auto options = std::make_shared<IntervalOptions>();
+  add_scene_options(*app, options->scene);
+  app->add_option("--confirm", options->confirm_trials,
+                  "run so many Monte Carlo trials of the whole filter at every answer")
+      ->check(CLI::Range(0, 1000000))
+      ->type_name("N");
+  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
+  app->footer(
+      "Without --imu: the five classes of the source paper, and the scene's own IMU. Without\n"
+      "--limit: 1, 3, 10, 30 and 100 m.\n"
+      "Examples:\n"
+      "  leeway interval --scene docs/examples/scenes/town-car.toml\n"
+      "  leeway interval --scene docs/examples/scenes/square-loop.toml --imu tactical --limit 10 "
+      "--confirm 200");
+  app->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace leeway::cli

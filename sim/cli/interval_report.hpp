@@ -1,0 +1,16 @@
+/// @file
+/// What `leeway interval` says.
+#pragma once
+
+#include <vector>
+
+#include "interval_confirm.hpp"
+
+namespace leeway::cli {
+
+void print_interval_tables(const std::vector<SolvedImu>& solved);
+
+/// By the contract of --json.
+void print_interval_json(const std::vector<SolvedImu>& solved);
+
+}  // namespace leeway::cli
