@@ -9,7 +9,7 @@
 
 #include "leeway/error.hpp"
 #include "leeway/filters/gnss_measurement.hpp"
-#include "truth_model.hpp"
+#include "scene_covariance.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -44,53 +44,6 @@ double step_limit_s(const ImuErrorModel& imu) {
   return std::max(0.1 * shortest_s, 0.01);
 }
 
-Estimate start_of(const Scene& scene) {
-  Estimate start;
-  start.nav = truth_at(scene.trajectory, 0.0).nav;
-  return start;
-}
-
-/// The filter's own covariance and, where that is another, the true one.
-class ScenePair {
- public:
-  ScenePair(const Scene& scene, bool by_source)
-      : noise_(process_noise(scene.filter.imu)),
-        P_(initial_covariance(start_of(scene), initial_sigma(scene), scene.filter.imu)) {
-    ErrorMatrix nav = P_;
-    nav.bottomRows<6>().setZero();
-    truth_.emplace(scene, nav, noise_, by_source);
-  }
-
-  /// Leaves the truth out where the filter's covariance is it.
-  void drop_known_truth(const Eigen::Matrix<double, 6, 1>& fix_variance) {
-    if (truth_->is_known_to(P_, noise_, fix_variance)) truth_.reset();
-  }
-
-  void propagate(const Leg& leg) {
-    leeway::propagate(P_, leg.Phi, noise_);
-    if (truth_) truth_->propagate(leg);
-  }
-
-  void update(ScalarGain& gain) {
-    if (truth_) {
-      const ErrorVector cross = P_ * gain.h;
-      gain.K = cross / (gain.h.dot(cross) + 1.0);
-      truth_->update(gain);
-    }
-    ErrorVector none = ErrorVector::Zero();
-    scalar_update(P_, none, gain.h, 0.0);
-  }
-
-  const ErrorMatrix& claimed() const { return P_; }
-  ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
-  ErrorBudget budget(const Eigen::Matrix3d& C_en) const { return truth_->budget(C_en); }
-
- private:
-  ProcessNoise noise_;
-  ErrorMatrix P_;
-  std::optional<TruthModel> truth_{};
-};
-
 /// The extremes of a stretch of the scene.
 struct Window {
   long index{-1};  // counted back from the end
@@ -108,13 +61,8 @@ class Analysis {
         track_(track),
         config_(config),
         pair_(scene, config.by_source),
-        window_s_(scored_part_s(scene)) {
-    const GnssErrorModel& gnss = scene.gnss.errors;
-    sigma_.head<3>() =
-        (gnss.position_sigma_n_m.cwiseAbs2() + gnss.correlated_sigma_n_m.cwiseAbs2()).cwiseSqrt();
-    sigma_.tail<3>() = gnss.velocity_sigma_n_mps;
-    if (scene.filter.gnss_correlation_s == 0.0) pair_.drop_known_truth(sigma_.cwiseAbs2());
-  }
+        window_s_(scored_part_s(scene)),
+        sigma_(fix_variance(scene.gnss.errors).cwiseSqrt()) {}
 
   CovarianceAnalysis run() {
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
@@ -130,7 +78,7 @@ class Analysis {
   }
 
  private:
-  double advance(ScenePair& pair, double from_s, double to_s) const {
+  double advance(SceneCovariance& pair, double from_s, double to_s) const {
     while (from_s < to_s) {
       const Leg leg = track_.leg(from_s, to_s);
       pair.propagate(leg);
@@ -141,7 +89,7 @@ class Analysis {
     return to_s;
   }
 
-  CovariancePoint point(const ScenePair& pair, double t_s, Moment moment) const {
+  CovariancePoint point(const SceneCovariance& pair, double t_s, Moment moment) const {
     return {t_s, moment, truth_at(scene_.trajectory, t_s).nav.r_e_m, pair.claimed(), pair.truth()};
   }
 
@@ -155,12 +103,12 @@ class Analysis {
     if (arrival_s == now_s_) {
       score(pair_, now_s_);
     } else {
-      ScenePair ahead = pair_;
+      SceneCovariance ahead = pair_;
       score(ahead, advance(ahead, now_s_, arrival_s));
     }
   }
 
-  void score(const ScenePair& pair, double t_s) {
+  void score(const SceneCovariance& pair, double t_s) {
     const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
     if (config_.observer) config_.observer(before);
     if (window_.index > 0) return;
@@ -248,7 +196,7 @@ class Analysis {
   const Scene& scene_;
   const ErrorTrack& track_;
   const CovarianceConfig& config_;
-  ScenePair pair_;
+  SceneCovariance pair_;
   double window_s_;
   Eigen::Matrix<double, 6, 1> sigma_;  // of the fixes, as the filter is told
   double now_s_{0.0};
@@ -281,7 +229,7 @@ ErrorTrack error_track(const Scene& scene, double step_s) {
 void free_inertial(const Scene& scene, const ErrorTrack& track,
                    const std::function<bool(const CovariancePoint&)>& observer) {
   validate(scene);
-  ScenePair pair(perfectly_started(scene), false);
+  SceneCovariance pair(perfectly_started(scene), false);
   CovariancePoint point;
   do {
     const Leg leg = track.leg(point.t_s, scene.duration_s);
