@@ -46,11 +46,10 @@ class Confirmer {
     Confirmation c;
     c.campaign = first.campaign;
     c.rms_over_true = first.rms_over_true();
-    const bool diverged = c.campaign.diverged > 0;
-    c.consistent = !diverged && within_band(c.campaign.mean_nees, kErrorStates, scene_.trials);
-    const double squared = c.rms_over_true * c.rms_over_true;
-    c.linear = !diverged && within_band(2.0 * squared, 2, scene_.trials);
-    if (!c.linear) c.interval_s = search(answer, first);
+    c.consistent = c.campaign.diverged == 0 &&
+                   within_band(c.campaign.mean_nees, kErrorStates, scene_.trials) &&
+                   within_band(2.0 * c.rms_over_true * c.rms_over_true, 2, scene_.trials);
+    if (!c.consistent) c.interval_s = search(answer, first);
     return c;
   }
 
@@ -68,6 +67,9 @@ class Confirmer {
 
   /// Secants in log(error) over log(interval). @returns nothing when they do not close in.
   std::optional<double> search(const sim::Interval& answer, const Run& first) {
+    if (std::abs(first.error_m() / answer.limit_m - 1.0) < kSearchTolerance) {
+      return answer.interval_s;
+    }
     double slope = 1.0;
     double before_log_s = std::log(answer.interval_s);
     double before_log_m = std::log(first.error_m());

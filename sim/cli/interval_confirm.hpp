@@ -15,11 +15,9 @@ namespace leeway::cli {
 struct Confirmation {
   sim::CampaignResult campaign{};
   double rms_over_true{};  ///< to the linear analysis, which knows the unmodelled errors
-  /// The filter is as good as its claim: NEES within the band that an honest filter leaves once in
-  /// a thousand times, and no trial diverged.
+  /// The filter errs as much as it claims and as the linear analysis says: NEES and the squared RMS
+  /// within the band that an honest filter leaves once in a thousand times, and no trial diverged.
   bool consistent{false};
-  /// The error is what the linear analysis says, likewise.
-  bool linear{false};
   /// Where it is not: the interval at which the Monte Carlo's error meets the limit.
   std::optional<double> interval_s{};
 };
