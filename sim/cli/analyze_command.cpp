@@ -75,7 +75,7 @@ void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   if (r.settled) {
     fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);
   } else {
-    fmt::print("Still settling at the scene's end, {:g} s.\n\n", r.settled_s);
+    fmt::print("Not settled by the scene's end, {:g} s.\n\n", r.settled_s);
   }
   print_sigmas(r.worst);
   fmt::print("\nWhere the true error comes from\n");
