@@ -56,7 +56,7 @@ class Ranks {
 
   int rank_{0};
   int count_{1};
-  bool has_started_mpi_{false};
+  [[maybe_unused]] bool has_started_mpi_{false};  // unused when built without MPI
 };
 
 }  // namespace leeway::sim
