@@ -139,6 +139,7 @@ UpdateReport Ekf::update(const GnssFix& fix) {
   report.covariance_positive = S_llt.info() == Eigen::Success;
   if (!report.covariance_positive) return report;
   report.nis = m.innovation.dot(S_llt.solve(m.innovation));
+  report.log_det_S = 2.0 * S_llt.matrixLLT().diagonal().array().log().sum();
   if (!(report.nis <= report.gate)) {
     report.outcome = UpdateReport::Outcome::kGated;
     return report;

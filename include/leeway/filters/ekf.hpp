@@ -51,6 +51,7 @@ struct UpdateReport {
   int dof{0};                      ///< components of the fix
   double nis{0.0};                 ///< normalized innovation squared of the whole fix, by its own R
   double gate{0.0};                ///< the NIS above which it is refused
+  double log_det_S{0.0};           ///< of the innovation's covariance; with the NIS, the likelihood
   bool covariance_positive{true};  ///< no diagonal element and no innovation variance <= 0
 };
 
