@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "leeway/error.hpp"
@@ -51,28 +52,36 @@ std::optional<Alignment> Aligner::push(const GnssFix& fix) {
                         to_seconds(fix.time - previous_->time) <= config_.max_fix_interval_s;
   std::optional<Alignment> result;
   if (in_a_row) {
-    watch_rest(*fix.velocity);
+    const bool at_rest = watch_rest(*fix.velocity);
     const bool moving = fix.velocity->v_e_mps.norm() >= config_.min_speed_mps &&
                         previous_->velocity->v_e_mps.norm() >= 0.5 * config_.min_speed_mps;
-    if (moving && fix.position) result = align(fix, *previous_->velocity);
+    if (!fix.position) {
+      // A start needs a place.
+    } else if (config_.heading_from_course) {
+      if (moving) result = align_by_course(fix, *previous_->velocity);
+    } else if (moving || (at_rest && rest_.dt_s >= config_.min_rest_s)) {
+      result = level_only(fix, *previous_->velocity, at_rest);
+    }
   }
   previous_ = fix;
   since_fix_ = Sum{};
   return result;
 }
 
-void Aligner::watch_rest(const GnssVelocity& velocity) {
+bool Aligner::watch_rest(const GnssVelocity& velocity) {
   const double free_turn_rad =
       config_.rest_turn_rad + 3.0 * filter_.imu.gyro.bias_sigma * since_fix_.dt_s;
   const bool at_rest = velocity.v_e_mps.norm() < config_.rest_speed_mps &&
                        previous_->velocity->v_e_mps.norm() < config_.rest_speed_mps &&
                        since_fix_.dtheta_b_rad.norm() < free_turn_rad;
-  if (!at_rest) return;
+  if (!at_rest) return false;
   rest_.dt_s += since_fix_.dt_s;
   rest_.dtheta_b_rad += since_fix_.dtheta_b_rad;
+  rest_.dv_b_mps += since_fix_.dv_b_mps;
+  return true;
 }
 
-Alignment Aligner::align(const GnssFix& fix, const GnssVelocity& before) const {
+Alignment Aligner::align_by_course(const GnssFix& fix, const GnssVelocity& before) const {
   const double dt_s = since_fix_.dt_s;
   const Geodetic place = geodetic_from_ecef(fix.position->r_e_m);
   const Eigen::Matrix3d C_en = ned_to_ecef(place);
@@ -94,9 +103,6 @@ Alignment Aligner::align(const GnssFix& fix, const GnssVelocity& before) const {
 
   Alignment result;
   Estimate& estimate = result.estimate;
-  if (rest_.dt_s >= config_.min_rest_s) {
-    estimate.bias.b_g_radps = rest_.dtheta_b_rad / rest_.dt_s;
-  }
   const Eigen::Vector3d omega_b = since_fix_.dtheta_b_rad / dt_s;
   estimate.nav.time = fix.time;
   estimate.nav.q_eb = Eigen::Quaterniond(C_en * rotation_from_euler(rpy)).normalized();
@@ -115,7 +121,53 @@ Alignment Aligner::align(const GnssFix& fix, const GnssVelocity& before) const {
                               filter_.imu.accelerometer.bias_sigma / kStandardGravityMps2,
                               std::sqrt(2.0) * sigma_v_mps / (dt_s * kStandardGravityMps2));
   result.P = initial_covariance(estimate, sigma, filter_.imu);
+  set_rest_bias(result);
+  return result;
+}
+
+Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const {
+  const double dt_s = at_rest ? rest_.dt_s : since_fix_.dt_s;
+  const Eigen::Vector3d f_b = (at_rest ? rest_.dv_b_mps : since_fix_.dv_b_mps) / dt_s;
+  const Eigen::Vector3d turn_e = fix.velocity->v_e_mps - before.v_e_mps;
+  const Eigen::Vector3d a_e = at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(turn_e / dt_s);
+  const Eigen::Vector3d f_e = a_e - gravity_e(GravityModel::kNormal, fix.position->r_e_m);
+
+  Alignment result;
+  Estimate& estimate = result.estimate;
+  estimate.nav.time = fix.time;
+  estimate.nav.q_eb = Eigen::Quaterniond::FromTwoVectors(f_b, f_e).normalized();
+  // The measured force is the mean of the interval, the attitude wanted that of its end.
+  const Eigen::Vector3d half_turn_b = 0.5 * since_fix_.dtheta_b_rad;
+  if (!at_rest) {
+    estimate.nav.q_eb = (estimate.nav.q_eb * exp_quaternion(half_turn_b)).normalized();
+  }
+  estimate.nav.v_e_mps = fix.velocity->v_e_mps;
+  estimate.nav.r_e_m = fix.position->r_e_m;
+  result.axis_e = f_e.normalized();
+  result.turn_sigma_rad = std::numbers::pi;
+
+  const double sigma_v_mps = std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
+  const double sigma_a_mps2 = at_rest ? 0.0 : std::sqrt(2.0) * sigma_v_mps / dt_s;
+  InitialSigma sigma;
+  sigma.position_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
+  sigma.velocity_mps = sigma_v_mps;
+  sigma.tilt_rad =
+      std::hypot(config_.tilt_floor_rad,
+                 std::hypot(filter_.imu.accelerometer.bias_sigma, sigma_a_mps2) / f_e.norm());
+  sigma.heading_rad = sigma.tilt_rad;
+  result.P = initial_covariance(estimate, sigma, filter_.imu);
+  // The turn about the axis is told apart from the rest.
+  const Eigen::Matrix3d across =
+      Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose();
+  result.P.block<3, 3>(kPsi, kPsi) =
+      across * result.P.block<3, 3>(kPsi, kPsi) * across.transpose();
+  set_rest_bias(result);
+  return result;
+}
+
+void Aligner::set_rest_bias(Alignment& result) const {
   if (rest_.dt_s >= config_.min_rest_s) {
+    result.estimate.bias.b_g_radps = rest_.dtheta_b_rad / rest_.dt_s;
     // What is left of the bias: white noise over the rest, the Earth's rotation, which was taken
     // for bias, and the in-run drift.
     const TriadErrorModel& gyro = filter_.imu.gyro;
@@ -124,7 +176,6 @@ Alignment Aligner::align(const GnssFix& fix, const GnssVelocity& before) const {
                             gyro.in_run.sigma * gyro.in_run.sigma;
     result.P.diagonal().segment<3>(kBg).setConstant(variance);
   }
-  return result;
 }
 
 }  // namespace leeway

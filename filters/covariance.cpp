@@ -32,10 +32,27 @@ void add_noise(ErrorMatrix& P, const ProcessNoise& noise, double dt_s) {
   P.diagonal().segment<3>(kBg).array() += noise.b_g_rad2_per_s3 * dt_s;
 }
 
-void mirror_upper(ErrorMatrix& P) {
-  for (int j = 0; j < kErrorStates; ++j) {
-    for (int i = j + 1; i < kErrorStates; ++i) P(i, j) = P(j, i);
+template <int N>
+void mirror_upper(Eigen::Matrix<double, N, N>& P) {
+  for (int j = 0; j < N; ++j) {
+    for (int i = j + 1; i < N; ++i) P(i, j) = P(j, i);
   }
+}
+
+template <int N>
+double scalar_update_of(Eigen::Matrix<double, N, N>& P, Eigen::Matrix<double, N, 1>& x_hat,
+                        const Eigen::Matrix<double, N, 1>& h, double z) {
+  const Eigen::Matrix<double, N, 1> u = P * h;
+  const double s = h.dot(u) + 1.0;
+  const Eigen::Matrix<double, N, 1> K = u / s;
+  // A h is formed from the rounded A: that is what keeps P positive definite where the expanded
+  // form, in which it cancels against K, does not.
+  const Eigen::Matrix<double, N, N> A = P - K * u.transpose();
+  const Eigen::Matrix<double, N, 1> residue = A * h - K;
+  P = A - residue * K.transpose();
+  mirror_upper(P);
+  x_hat += K * (z - h.dot(x_hat));
+  return s;
 }
 
 struct BiasDrive {
@@ -95,18 +112,22 @@ void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise)
   add_noise(P, noise, 0.5 * Phi.dt_s);
 }
 
+VehicleCross transported(const Transition& Phi, const VehicleCross& C) {
+  VehicleCross result;
+  result.middleRows<3>(kPsi) =
+      Phi.psi_psi * C.middleRows<3>(kPsi) + Phi.psi_g * C.middleRows<3>(kBg);
+  result.middleRows<6>(kDv) = motion_rows(Phi) * C;
+  result.middleRows<3>(kBa) = Phi.a_a * C.middleRows<3>(kBa);
+  result.middleRows<3>(kBg) = Phi.g_g * C.middleRows<3>(kBg);
+  return result;
+}
+
 double scalar_update(ErrorMatrix& P, ErrorVector& x_hat, const ErrorVector& h, double z) {
-  const ErrorVector u = P * h;
-  const double s = h.dot(u) + 1.0;
-  const ErrorVector K = u / s;
-  // A h is formed from the rounded A: that is what keeps P positive definite where the expanded
-  // form, in which it cancels against K, does not.
-  const ErrorMatrix A = P - K * u.transpose();
-  const ErrorVector residue = A * h - K;
-  P = A - residue * K.transpose();
-  mirror_upper(P);
-  x_hat += K * (z - h.dot(x_hat));
-  return s;
+  return scalar_update_of<kErrorStates>(P, x_hat, h, z);
+}
+
+double scalar_update(JointMatrix& P, JointVector& x_hat, const JointVector& h, double z) {
+  return scalar_update_of<kJointStates>(P, x_hat, h, z);
 }
 
 }  // namespace leeway

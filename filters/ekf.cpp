@@ -1,6 +1,7 @@
 #include "leeway/filters/ekf.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -56,6 +57,10 @@ void validate(const Estimate& estimate, const ErrorMatrix& P) {
   }
 }
 
+double nis_of(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& S) {
+  return innovation.dot(S.llt().solve(innovation));
+}
+
 }  // namespace
 
 Ekf::Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P)
@@ -66,7 +71,7 @@ Ekf::Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P
       P_(P) {
   validate(config);
   validate(estimate, P);
-  for (const std::size_t dof : {3U, 6U}) {
+  for (std::size_t dof = 1; dof < gate_.size(); ++dof) {
     gate_[dof] = config.gate_probability > 0.0
                      ? chi_square_threshold(config.gate_probability, static_cast<int>(dof))
                      : std::numeric_limits<double>::infinity();
@@ -123,50 +128,157 @@ void Ekf::coast(Time to) {
   P_.block<3, 3>(kDr, kDv).diagonal().array() += velocity_mps * position_m;
 }
 
-UpdateReport Ekf::update(const GnssFix& fix) {
-  UpdateReport report;
-  report.time = fix.time;
-  if (!is_usable(fix)) return report;
+UpdateReport Ekf::judge(const Measurement& m) {
   flush();
-
-  const GnssMeasurement m =
-      gnss_measurement(fix, estimate_, config_.lever_arm_b_m, omega_ib_b_radps_);
+  UpdateReport report;
+  report.time = estimate_.nav.time;
   report.dof = m.rows();
   report.gate = gate_[static_cast<std::size_t>(report.dof)];
   using Matrix = decltype(m.R);
-  const Matrix S = m.H * P_ * m.H.transpose() + m.R;
+  Matrix S = m.H * P_ * m.H.transpose() + m.R;
+  if (estimates_vehicle_) {
+    const Matrix crossed = m.H * vehicle_.cross * m.H_vehicle.transpose();
+    S += m.H_vehicle * vehicle_.P * m.H_vehicle.transpose() + crossed + crossed.transpose();
+  }
+  if (m.rows() == 6) {
+    report.position_nis = nis_of(m.innovation.head<3>(), S.topLeftCorner<3, 3>());
+    report.velocity_nis = nis_of(m.innovation.tail<3>(), S.bottomRightCorner<3, 3>());
+  }
   const Eigen::LLT<Matrix> S_llt(S);
   report.covariance_positive = S_llt.info() == Eigen::Success;
   if (!report.covariance_positive) return report;
   report.nis = m.innovation.dot(S_llt.solve(m.innovation));
   report.log_det_S = 2.0 * S_llt.matrixLLT().diagonal().array().log().sum();
-  if (!(report.nis <= report.gate)) {
-    report.outcome = UpdateReport::Outcome::kGated;
-    return report;
-  }
+  report.outcome = report.nis <= report.gate ? UpdateReport::Outcome::kFused
+                                             : UpdateReport::Outcome::kGated;
+  return report;
+}
 
+void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights) {
   // Whitened by the Cholesky factor of R, the components are independent, of unit variance.
-  const Eigen::LLT<Matrix> R_llt(m.R);
-  auto white_H = R_llt.matrixL().solve(m.H).eval();
-  auto white_z = R_llt.matrixL().solve(m.innovation).eval();
-  if (fix.position) {
-    const double weight = position_weight(fix.time);
-    white_H.topRows<3>() *= weight;
-    white_z.head<3>() *= weight;
-    last_position_fix_ = fix.time;
-  }
+  const Eigen::LLT<decltype(m.R)> R_llt(m.R);
+  const auto white_H = R_llt.matrixL().solve(m.H).eval();
+  const auto white_z = R_llt.matrixL().solve(m.innovation).eval();
   ErrorVector x_hat = ErrorVector::Zero();
-  for (int i = 0; i < report.dof; ++i) {
-    scalar_update(P_, x_hat, white_H.row(i).transpose(), white_z(i));
+  if (estimates_vehicle_) {
+    const auto white_H_vehicle = R_llt.matrixL().solve(m.H_vehicle).eval();
+    JointMatrix P;
+    P << P_, vehicle_.cross, vehicle_.cross.transpose(), vehicle_.P;
+    JointVector x_joint = JointVector::Zero();
+    for (int i = 0; i < m.rows(); ++i) {
+      JointVector h;
+      h << white_H.row(i).transpose(), white_H_vehicle.row(i).transpose();
+      scalar_update(P, x_joint, weights(i) * h, weights(i) * white_z(i));
+    }
+    P_ = P.topLeftCorner<kErrorStates, kErrorStates>();
+    vehicle_.cross = P.topRightCorner<kErrorStates, kVehicleStates>();
+    vehicle_.P = P.bottomRightCorner<kVehicleStates, kVehicleStates>();
+    vehicle_.value += x_joint.tail<kVehicleStates>();
+    x_hat = x_joint.head<kErrorStates>();
+  } else {
+    for (int i = 0; i < m.rows(); ++i) {
+      scalar_update(P_, x_hat, weights(i) * white_H.row(i).transpose(), weights(i) * white_z(i));
+    }
   }
-
   inject(estimate_, x_hat);
   const Eigen::Matrix3d J = reset_jacobian(x_hat);
   P_.middleRows<3>(kPsi) = (J * P_.middleRows<3>(kPsi)).eval();
   P_.middleCols<3>(kPsi) = (P_.middleCols<3>(kPsi) * J.transpose()).eval();
+  if (estimates_vehicle_) {
+    vehicle_.cross.middleRows<3>(kPsi) = (J * vehicle_.cross.middleRows<3>(kPsi)).eval();
+  }
+}
+
+UpdateReport Ekf::update(const GnssFix& fix, const FixTrust& trust) {
+  if (!is_usable(fix)) {
+    UpdateReport unusable;
+    unusable.time = fix.time;
+    return unusable;
+  }
+  Measurement m = gnss_measurement(fix, estimate_, config_.lever_arm_b_m, omega_ib_b_radps_);
+  Eigen::Matrix<double, 6, 1> weights = Eigen::Matrix<double, 6, 1>::Ones();
+  if (fix.position) {
+    m.R.topLeftCorner<3, 3>() *= trust.position_sigma_scale * trust.position_sigma_scale;
+    weights.head<3>().setConstant(position_weight(fix.time));
+  }
+  if (fix.velocity) {
+    m.R.bottomRightCorner<3, 3>() *= trust.velocity_sigma_scale * trust.velocity_sigma_scale;
+  }
+  UpdateReport report = judge(m);
+  if (!fix.velocity) report.position_nis = report.nis;
+  if (!fix.position) report.velocity_nis = report.nis;
+  if (report.outcome != UpdateReport::Outcome::kFused) return report;
+  fuse(m, weights);
+  if (fix.position) last_position_fix_ = fix.time;
   report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
-  report.outcome = UpdateReport::Outcome::kFused;
   return report;
+}
+
+UpdateReport Ekf::update(const Measurement& m) {
+  UpdateReport report = judge(m);
+  if (report.outcome != UpdateReport::Outcome::kFused) return report;
+  fuse(m, Eigen::Matrix<double, 6, 1>::Ones());
+  report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
+  return report;
+}
+
+void Ekf::estimate_vehicle(const VehicleState& vehicle) {
+  flush();
+  vehicle_ = vehicle;
+  estimates_vehicle_ = true;
+}
+
+void Ekf::widen(double factor) {
+  flush();
+  P_ *= factor;
+  vehicle_.P *= factor;
+  vehicle_.cross *= factor;
+}
+
+void Ekf::turn_body_axes(const Eigen::Matrix3d& C_new_old, const Eigen::Vector3d& lever_arm_b_m) {
+  flush();
+  config_.lever_arm_b_m = lever_arm_b_m;
+  estimate_.nav.q_eb =
+      (estimate_.nav.q_eb * Eigen::Quaterniond(C_new_old.transpose())).normalized();
+  estimate_.bias.b_a_mps2 = C_new_old * estimate_.bias.b_a_mps2;
+  estimate_.bias.b_g_radps = C_new_old * estimate_.bias.b_g_radps;
+  for (const int bias : {kBa, kBg}) {
+    P_.middleRows<3>(bias) = (C_new_old * P_.middleRows<3>(bias)).eval();
+    P_.middleCols<3>(bias) = (P_.middleCols<3>(bias) * C_new_old.transpose()).eval();
+  }
+  omega_ib_b_radps_ = C_new_old * omega_ib_b_radps_;
+  mean_omega_ib_b_radps_ = C_new_old * mean_omega_ib_b_radps_;
+  history_ = ImuHistory{};
+  vehicle_ = VehicleState{};
+  estimates_vehicle_ = false;
+}
+
+void Ekf::restart_motion(const Eigen::Vector3d& r_e_m, const Eigen::Matrix3d& P_rr_m2,
+                         const Eigen::Vector3d& v_e_mps, const Eigen::Matrix3d& P_vv_m2ps2) {
+  flush();
+  estimate_.nav.r_e_m = r_e_m;
+  estimate_.nav.v_e_mps = v_e_mps;
+  P_.middleRows<6>(kDv).setZero();
+  P_.middleCols<6>(kDv).setZero();
+  P_.block<3, 3>(kDv, kDv) = P_vv_m2ps2;
+  P_.block<3, 3>(kDr, kDr) = P_rr_m2;
+  vehicle_.cross.middleRows<6>(kDv).setZero();
+}
+
+bool Ekf::repair_covariance() {
+  if (Eigen::LLT<ErrorMatrix>(P_).info() == Eigen::Success) return true;
+  constexpr double kFloor = 1e-9;
+  // Of the correlations, so that no state is small beside another for its unit alone.
+  const ErrorVector sigma = P_.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-12);
+  const ErrorVector inverse = sigma.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<ErrorMatrix> eigen(
+      ErrorMatrix(inverse.asDiagonal() * P_ * inverse.asDiagonal()));
+  const ErrorVector raised = eigen.eigenvalues().cwiseMax(kFloor);
+  const ErrorMatrix correlation =
+      eigen.eigenvectors() * raised.asDiagonal() * eigen.eigenvectors().transpose();
+  P_ = sigma.asDiagonal() * correlation * sigma.asDiagonal();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
+  return false;
 }
 
 double Ekf::position_weight(Time t) const {
@@ -183,6 +295,10 @@ ErrorMatrix Ekf::covariance() const {
 void Ekf::flush() {
   if (Phi_.dt_s == 0.0) return;
   propagate(P_, Phi_, noise_);
+  if (estimates_vehicle_) {
+    vehicle_.cross = transported(Phi_, vehicle_.cross);
+    vehicle_.P.diagonal() += Phi_.dt_s * vehicle_.random_walk_per_s;
+  }
   Phi_ = Transition{};
 }
 

@@ -16,15 +16,11 @@ Eigen::Vector3d antenna_velocity_e(const Estimate& estimate, const Eigen::Vector
          earth_rotation_e_radps().cross(lever_e);
 }
 
-GnssMeasurement gnss_measurement(const GnssFix& fix, const Estimate& estimate,
-                                 const Eigen::Vector3d& lever_arm_b_m,
-                                 const Eigen::Vector3d& omega_ib_b_radps) {
+Measurement gnss_measurement(const GnssFix& fix, const Estimate& estimate,
+                             const Eigen::Vector3d& lever_arm_b_m,
+                             const Eigen::Vector3d& omega_ib_b_radps) {
   const int rows = (fix.position ? 3 : 0) + (fix.velocity ? 3 : 0);
-  GnssMeasurement m;
-  m.innovation.resize(rows);
-  m.H.setZero(rows, kErrorStates);
-  m.R.setZero(rows, rows);
-
+  Measurement m(rows);
   const Eigen::Matrix3d C_eb = estimate.nav.q_eb.toRotationMatrix();
   const Eigen::Vector3d lever_e = C_eb * lever_arm_b_m;
   if (fix.position) {

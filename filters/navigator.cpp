@@ -9,14 +9,18 @@
 namespace leeway {
 namespace {
 
-constexpr std::array<std::string_view, kVerdicts> kVerdictNames{
-    "accepted",  "aligning",     "fused",      "gated",       "gap",     "late",
-    "duplicate", "out_of_order", "not_finite", "implausible", "overflow"};
+constexpr Duration kFurthestTime = std::chrono::seconds{4'000'000'000};  // 127 years
+constexpr double kCoastingS = 2.0;
+constexpr double kInconsistentRatio = 2.0;  // of NIS to its expectation, over 30 fixes
 
 bool all_finite(const GnssFix& fix) {
   return (!fix.position || (fix.position->r_e_m.allFinite() && fix.position->R_e_m2.allFinite())) &&
          (!fix.velocity ||
           (fix.velocity->v_e_mps.allFinite() && fix.velocity->R_e_m2ps2.allFinite()));
+}
+
+bool is_possible(Time t) {
+  return t.time_since_epoch() <= kFurthestTime && t.time_since_epoch() >= -kFurthestTime;
 }
 
 /// The increment over a longer interval at the same mean rates: bridges a short hole.
@@ -28,14 +32,49 @@ ImuIncrement stretched(const ImuIncrement& inc, double dt_s) {
   return result;
 }
 
+double seconds_since(const std::optional<Time>& then, const std::optional<Time>& now) {
+  return then && now ? std::max(0.0, to_seconds(*now - *then)) : 0.0;
+}
+
+void require(bool holds, const char* field, double value, const char* range) {
+  if (holds) return;
+  throw Error(std::string("navigator: ") + field + " is " + std::to_string(value) + ", must be " +
+              range);
+}
+
 }  // namespace
 
-std::string_view name(Verdict verdict) { return kVerdictNames[static_cast<std::size_t>(verdict)]; }
+std::string_view name(Verdict verdict) {
+  constexpr std::array<std::string_view, kVerdicts> kNames{
+      "accepted",  "aligning",     "fused",  "gated",      "reset",
+      "gap",       "late",         "duplicate", "out_of_order", "future",
+      "clock_jump", "unused",      "not_finite", "implausible", "overflow"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
 
-Navigator::Navigator(const NavigatorConfig& config)
-    : config_(config), aligner_(config.alignment, config.filter) {
-  if (!(config.max_gap_s > 0.0 && config.max_rate_radps > 0.0 && config.max_force_mps2 > 0.0)) {
-    throw Error("navigator: max_gap_s, max_rate_radps and max_force_mps2 must be > 0");
+void validate(const NavigatorConfig& config) {
+  const TimingConfig& timing = config.timing;
+  require(config.max_gap_s > 0.0 && config.max_gap_s <= 10.0, "max_gap_s", config.max_gap_s,
+          "above 0, at most 10 s");
+  require(config.max_jump_s >= config.max_gap_s && config.max_jump_s <= 1e5, "max_jump_s",
+          config.max_jump_s, "max_gap_s to 1e5 s");
+  require(config.max_rate_radps > 0.0, "max_rate_radps", config.max_rate_radps, "above 0");
+  require(config.max_force_mps2 > 0.0, "max_force_mps2", config.max_force_mps2, "above 0");
+  require(std::abs(timing.position_lag_s) <= 10.0, "position_lag_s", timing.position_lag_s,
+          "within 10 s");
+  require(std::abs(timing.velocity_lag_s) <= 10.0, "velocity_lag_s", timing.velocity_lag_s,
+          "within 10 s");
+  require(timing.max_lateness_s >= 0.0 && timing.max_lateness_s <= 60.0, "max_lateness_s",
+          timing.max_lateness_s, "0 to 60 s");
+  require(timing.max_ahead_s >= 0.0 && timing.max_ahead_s <= 1e4, "max_ahead_s",
+          timing.max_ahead_s, "0 to 1e4 s");
+  require(timing.max_imu_rate_hz >= 1.0 && timing.max_imu_rate_hz <= 1e4, "max_imu_rate_hz",
+          timing.max_imu_rate_hz, "1 to 1e4 Hz");
+  if (config.C_bs && !((*config.C_bs * config.C_bs->transpose() - Eigen::Matrix3d::Identity())
+                               .cwiseAbs()
+                               .maxCoeff() < 1e-6 &&
+                       config.C_bs->determinant() > 0.0)) {
+    throw Error("navigator: C_bs must be a proper rotation to 1e-6");
   }
   // A bad filter configuration is to be told now, not when alignment ends in the middle of a drive.
   Estimate somewhere;
@@ -43,13 +82,20 @@ Navigator::Navigator(const NavigatorConfig& config)
   Ekf(config.filter, somewhere, ErrorMatrix::Identity());
 }
 
+Navigator::Navigator(const NavigatorConfig& config)
+    : config_(config), history_(config), clock_(config.max_jump_s, config.max_gap_s) {}
+
 void Navigator::start(const Estimate& estimate, const ErrorMatrix& P) {
-  filter_ = Ekf(config_.filter, estimate, P);
-  imu_time_ = estimate.nav.time;
-  while (waiting_count_ > 0 && waiting_[0].time < *imu_time_) {
-    take_waiting();
-    counted(Verdict::kLate);
-  }
+  Fusion fusion(config_);
+  fusion.start(estimate, P);
+  history_.restart(fusion, estimate.nav.time);
+  clock_.set(estimate.nav.time);
+  sample_.reset();
+}
+
+std::uint64_t Navigator::count(Verdict verdict) const {
+  const auto k = static_cast<std::size_t>(verdict);
+  return counts_[k] + history_.ledger().counts[k];
 }
 
 Verdict Navigator::counted(Verdict verdict) {
@@ -59,95 +105,151 @@ Verdict Navigator::counted(Verdict verdict) {
 
 Verdict Navigator::push(const ImuIncrement& inc) { return counted(take(inc)); }
 
-Verdict Navigator::take(const ImuIncrement& inc) {
+Verdict Navigator::push(const ImuSample& sample) {
+  if (!sample.omega_ib_b_radps.allFinite() || !sample.f_ib_b_mps2.allFinite()) {
+    return counted(Verdict::kNotFinite);
+  }
+  if (sample.omega_ib_b_radps.norm() > config_.max_rate_radps ||
+      sample.f_ib_b_mps2.norm() > config_.max_force_mps2 || !is_possible(sample.time)) {
+    return counted(Verdict::kImplausible);
+  }
+  const std::optional<ImuSample> before = sample_;
+  if (before && sample.time > before->time) {
+    const Verdict verdict =
+        counted(take(increment_between(*before, sample, config_.rate_meaning)));
+    const bool doubted = verdict == Verdict::kFuture || verdict == Verdict::kOutOfOrder;
+    if (!doubted) sample_ = sample;
+    return verdict;
+  }
+  if (before && sample.time == before->time) return counted(Verdict::kDuplicate);
+  // The first sample only starts the clock, and so does one on another time line.
+  const Verdict verdict = before ? clock_.judge(sample.time) : Verdict::kAligning;
+  if (!before || verdict == Verdict::kClockJump) sample_ = sample;
+  return counted(verdict);
+}
+
+Verdict Navigator::judge(const ImuIncrement& inc) const {
   if (!inc.dtheta_b_rad.allFinite() || !inc.dv_b_mps.allFinite() || !std::isfinite(inc.dt_s)) {
     return Verdict::kNotFinite;
   }
   if (!(inc.dt_s > 0.0) || inc.dtheta_b_rad.norm() > config_.max_rate_radps * inc.dt_s ||
-      inc.dv_b_mps.norm() > config_.max_force_mps2 * inc.dt_s) {
+      inc.dv_b_mps.norm() > config_.max_force_mps2 * inc.dt_s || !is_possible(inc.time)) {
     return Verdict::kImplausible;
   }
-  if (imu_time_ && inc.time == *imu_time_) return Verdict::kDuplicate;
-  if (imu_time_ && inc.time < *imu_time_) return Verdict::kOutOfOrder;
-  const double dt_s = imu_time_ ? to_seconds(inc.time - *imu_time_) : inc.dt_s;
-  const bool gap = std::max(dt_s, inc.dt_s) > config_.max_gap_s;
-  if (gap && !filter_) {
-    // What was collected before a hole says nothing about the attitude after it.
-    aligner_ = Aligner(config_.alignment, config_.filter);
-    imu_time_ = inc.time;
-    return Verdict::kGap;
-  }
-  if (gap) {
-    while (waiting_count_ > 0 && waiting_[0].time <= inc.time) {
-      if (waiting_[0].time > *imu_time_) filter_->coast(waiting_[0].time);
-      apply(take_waiting());
-    }
-    if (filter_->estimate().nav.time < inc.time) filter_->coast(inc.time);
-    imu_time_ = inc.time;
-    return Verdict::kGap;
-  }
-  advance(dt_s == inc.dt_s ? inc : stretched(inc, dt_s));
-  imu_time_ = inc.time;
-  return filter_ ? Verdict::kAccepted : Verdict::kAligning;
+  return Verdict::kAccepted;
 }
 
-void Navigator::advance(const ImuIncrement& inc) {
-  ImuIncrement rest = inc;
-  const auto integrate = [this](const ImuIncrement& piece) {
-    filter_ ? filter_->predict(piece) : aligner_.push(piece);
-  };
-  while (waiting_count_ > 0 && waiting_[0].time <= inc.time) {
-    const GnssFix fix = take_waiting();
-    const Time begin = rest.time - duration_from_seconds(rest.dt_s);
-    if (fix.time == rest.time) {
-      integrate(rest);
-      rest.dt_s = 0.0;
-    } else if (fix.time > begin) {
-      const auto [before, after] = split(rest, fix.time);
-      integrate(before);
-      rest = after;
-    }
-    apply(fix);
-  }
-  if (rest.dt_s > 0.0) integrate(rest);
-}
+Verdict Navigator::take(const ImuIncrement& inc) {
+  if (const Verdict verdict = judge(inc); verdict != Verdict::kAccepted) return verdict;
+  const std::optional<Time> before = clock_.newest();
+  const Verdict verdict = clock_.judge(inc.time);
+  Step step{inc};
+  step.inc.time = clock_.counted_on(inc.time);
+  if (verdict == Verdict::kClockJump) history_.restart(Fusion(config_), step.inc.time);
+  if (verdict != Verdict::kAccepted) return verdict;
 
-GnssFix Navigator::take_waiting() {
-  const GnssFix fix = waiting_[0];
-  std::copy(waiting_.begin() + 1, waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_count_),
-            waiting_.begin());
-  --waiting_count_;
-  return fix;
-}
-
-void Navigator::apply(const GnssFix& fix) {
-  if (!filter_) {
-    if (const auto alignment = aligner_.push(fix)) {
-      filter_.emplace(config_.filter, alignment->estimate, alignment->P);
-    }
-    counted(Verdict::kAligning);
-    return;
-  }
-  last_update_ = filter_->update(fix);
-  counted(last_update_.outcome == UpdateReport::Outcome::kFused   ? Verdict::kFused
-          : last_update_.outcome == UpdateReport::Outcome::kGated ? Verdict::kGated
-                                                                  : Verdict::kImplausible);
+  const double dt_s = before ? to_seconds(step.inc.time - *before) : inc.dt_s;
+  step.is_gap = std::max(dt_s, inc.dt_s) > config_.max_gap_s;
+  if (dt_s != inc.dt_s) step.inc = stretched(step.inc, dt_s);
+  history_.push(step);
+  if (step.is_gap) return Verdict::kGap;
+  return aligned() ? Verdict::kAccepted : Verdict::kAligning;
 }
 
 Verdict Navigator::push(const GnssFix& fix) {
   if (!all_finite(fix)) return counted(Verdict::kNotFinite);
-  if (!is_usable(fix)) return counted(Verdict::kImplausible);
-  if (fix_time_ && fix.time == *fix_time_) return counted(Verdict::kDuplicate);
-  if (fix_time_ && fix.time < *fix_time_) return counted(Verdict::kOutOfOrder);
-  if (imu_time_ && fix.time < *imu_time_) return counted(Verdict::kLate);
-  if (waiting_count_ == kMaxWaiting) return counted(Verdict::kOverflow);
-  fix_time_ = fix.time;
-  waiting_[waiting_count_++] = fix;
-  return Verdict::kAccepted;
+  if (!is_usable(fix) || !is_possible(fix.time)) return counted(Verdict::kImplausible);
+  return take(fix);
+}
+
+Verdict Navigator::take(const GnssFix& fix) {
+  const TimingConfig& timing = config_.timing;
+  GnssFix position = fix;
+  position.time = clock_.counted_on(fix.time) - duration_from_seconds(timing.position_lag_s);
+  if (timing.position_lag_s == timing.velocity_lag_s || !fix.velocity || !fix.position) {
+    if (!fix.position) {
+      position.time = clock_.counted_on(fix.time) - duration_from_seconds(timing.velocity_lag_s);
+    }
+    return place({position.time, position});
+  }
+  GnssFix velocity = position;
+  velocity.time = clock_.counted_on(fix.time) - duration_from_seconds(timing.velocity_lag_s);
+  velocity.position.reset();
+  position.velocity.reset();
+  // The verdict is that on the position.
+  place({velocity.time, velocity, false});
+  return place({position.time, position});
+}
+
+Verdict Navigator::push(const OdometerSpeed& odometer) {
+  if (!std::isfinite(odometer.speed_mps) || !std::isfinite(odometer.sigma_mps)) {
+    return counted(Verdict::kNotFinite);
+  }
+  if (!is_usable(odometer) || !is_possible(odometer.time)) return counted(Verdict::kImplausible);
+  const Time t = clock_.counted_on(odometer.time);
+  return place({t, odometer});
+}
+
+Verdict Navigator::push(const BarometricHeight& barometer) {
+  if (!std::isfinite(barometer.height_m) || !std::isfinite(barometer.sigma_m)) {
+    return counted(Verdict::kNotFinite);
+  }
+  if (!is_usable(barometer) || !is_possible(barometer.time)) return counted(Verdict::kImplausible);
+  const Time t = clock_.counted_on(barometer.time);
+  return place({t, barometer});
+}
+
+Verdict Navigator::place(const Event& event) {
+  const std::optional<Time>& now = clock_.newest();
+  const auto refused = [&](Verdict verdict) {
+    return event.counts ? counted(verdict) : verdict;
+  };
+  if (now && to_seconds(event.time - *now) > config_.timing.max_ahead_s) {
+    return refused(Verdict::kFuture);
+  }
+  switch (history_.push(event)) {
+    case History::Place::kAhead:
+      return Verdict::kAccepted;
+    case History::Place::kWithin:
+      return history_.verdict(event);
+    case History::Place::kLate:
+      return refused(Verdict::kLate);
+    case History::Place::kDuplicate:
+      return refused(Verdict::kDuplicate);
+    case History::Place::kFull:
+      break;
+  }
+  return refused(Verdict::kOverflow);
 }
 
 Solution Navigator::solution() const {
-  return leeway::solution(filter_->estimate(), filter_->covariance());
+  return leeway::solution(filter().estimate(), fusion().bank().covariance());
+}
+
+Health Navigator::health() const {
+  const Fusion& f = fusion();
+  Health health;
+  health.mount_known = f.C_bs().has_value();
+  health.at_rest = f.at_rest();
+  health.repairs = f.repairs();
+  health.resets = f.resets();
+  health.realignments = f.realignments();
+  if (!f.aligned()) return health;
+  health.coasting_s = seconds_since(f.last_fused(), history_.now());
+  health.gating_s = seconds_since(f.gated_since(), history_.now());
+  health.position_nis_ratio = f.position_noise().nis_ratio();
+  health.velocity_nis_ratio = f.velocity_noise().nis_ratio();
+  health.position_sigma_scale = f.position_noise().sigma_scale();
+  health.velocity_sigma_scale = f.velocity_noise().sigma_scale();
+  const double ratio = std::max(health.position_nis_ratio, health.velocity_nis_ratio);
+  health.optimistic_by = std::sqrt(std::max(1.0, ratio));
+  using State = Health::State;
+  health.state = f.gated_since()                    ? State::kGating
+                 : health.coasting_s > kCoastingS   ? State::kCoasting
+                 : !f.bank().collapsed()            ? State::kHeadingOpen
+                 : ratio > kInconsistentRatio       ? State::kInconsistent
+                                                    : State::kAligned;
+  return health;
 }
 
 }  // namespace leeway

@@ -174,7 +174,7 @@ class Analysis {
     Estimate estimate;
     estimate.nav = truth.nav;
     const GnssFix fix{truth.nav.time, GnssPosition{}, GnssVelocity{}};
-    const GnssMeasurement m =
+    const Measurement m =
         gnss_measurement(fix, estimate, scene_.filter.lever_arm_b_m, truth.omega_ib_b_radps);
     const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
     const double weight =

@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include "fuse_jobs.hpp"
 
 #include <algorithm>
@@ -148,6 +149,8 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
   config.filter = options.filter;
   config.alignment = options.alignment;
   config.filter.imu = imu;
+  if (std::getenv("CAR")) config.vehicle = VehicleConfig::car();
+  if (std::getenv("NOMOUNT")) config.C_bs.reset();
   config.filter.strapdown.scheme = static_cast<Scheme>(index_of(scheme_names(), options.scheme));
   if (options.lever_arm_b_m) config.filter.lever_arm_b_m = *options.lever_arm_b_m;
   Navigator{config};
@@ -163,7 +166,7 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   if (logs.drives.empty()) jobs.push_back(job_of_logs(options));
   for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(options, folder));
   for (FuseJob& job : jobs) {
-    job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
+    if (!std::getenv("NOMOUNT")) job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
     inspect(job);
   }
   return jobs;

@@ -316,7 +316,7 @@ TEST_CASE("every row of H reduces a variance, and none grows") {
   GnssFix fix;
   fix.position = GnssPosition{estimate.nav.r_e_m};
   fix.velocity = GnssVelocity{estimate.nav.v_e_mps};
-  const GnssMeasurement m = gnss_measurement(fix, estimate, {1.0, 2.0, -1.0}, {0.1, 0.2, 0.3});
+  const Measurement m = gnss_measurement(fix, estimate, {1.0, 2.0, -1.0}, {0.1, 0.2, 0.3});
   const ErrorMatrix before = random_covariance(1);
   for (int row = 0; row < m.rows(); ++row) {
     CAPTURE(row);

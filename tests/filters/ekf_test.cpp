@@ -109,7 +109,7 @@ TEST_CASE("a whole fix against the dense Kalman update in long double, and the r
                                 random_covariance3(random, 2.0)};
     fix.velocity = GnssVelocity{antenna_velocity_e(elsewhere, config.lever_arm_b_m, omega_b_radps),
                                 random_covariance3(random, 0.1)};
-    const GnssMeasurement m = gnss_measurement(fix, before, config.lever_arm_b_m, omega_b_radps);
+    const Measurement m = gnss_measurement(fix, before, config.lever_arm_b_m, omega_b_radps);
     const Wide H = m.H.cast<long double>();
     const Wide P_wide = P_before.cast<long double>();
     const Wide S = H * P_wide * H.transpose() + m.R.cast<long double>();
@@ -247,7 +247,7 @@ TEST_CASE("a spinning vehicle: the lever arm makes innovations unbiased, without
     for (const ImuIncrement& inc : log.imu) {
       ekf.predict(inc);
       if (next == log.fixes.size() || log.fixes[next].time != inc.time) continue;
-      const GnssMeasurement m = gnss_measurement(log.fixes[next++], ekf.estimate(), told_b_m,
+      const Measurement m = gnss_measurement(log.fixes[next++], ekf.estimate(), told_b_m,
                                                  inc.dtheta_b_rad / inc.dt_s);
       sum += ekf.estimate().nav.q_eb.conjugate() * Eigen::Vector3d(m.innovation.segment<3>(row));
     }

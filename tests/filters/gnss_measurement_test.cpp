@@ -59,7 +59,7 @@ TEST_CASE("H is the derivative of the innovation with respect to the error") {
         return gnss_measurement(perfect_fix(truth, s, p, v), s.estimate, s.lever_b_m,
                                 s.omega_b_radps);
       };
-      const GnssMeasurement m = measure(ErrorVector::Zero());
+      const Measurement m = measure(ErrorVector::Zero());
       REQUIRE(m.rows() == 3 * (position + velocity));
       // Injecting zero renormalizes the quaternion: a rounding of 300 m/s and 6.4e6 m.
       CHECK(m.innovation.cwiseAbs().maxCoeff() < 2e-9);
@@ -88,7 +88,7 @@ TEST_CASE("R and the innovation are those of the fix, position first") {
   fix.velocity->R_e_m2ps2 = 2.0 * A.transpose() * A;
   fix.position->r_e_m.x() += 7.0;
   fix.velocity->v_e_mps.z() -= 3.0;
-  const GnssMeasurement m = gnss_measurement(fix, s.estimate, s.lever_b_m, s.omega_b_radps);
+  const Measurement m = gnss_measurement(fix, s.estimate, s.lever_b_m, s.omega_b_radps);
   CHECK(m.R.topLeftCorner<3, 3>() == fix.position->R_e_m2);
   CHECK(m.R.bottomRightCorner<3, 3>() == fix.velocity->R_e_m2ps2);
   CHECK(m.R.topRightCorner<3, 3>().isZero(0.0));

@@ -18,6 +18,9 @@ namespace leeway {
 EulerAngles level(const Eigen::Vector3d& f_b_mps2, const Eigen::Vector3d& f_level_mps2);
 
 struct AlignmentConfig {
+  /// Whether the vehicle points where it goes and its axes are known. If not, it starts with a
+  /// heading that is anywhere on the circle.
+  bool heading_from_course{true};
   double min_speed_mps{3.0};       ///< course is taken as heading from this speed on
   double sideslip_rad{0.05};       ///< 1 sigma of heading against course: slip and mount
   double tilt_floor_rad{0.03};     ///< 1 sigma of levelling beyond what the fixes explain
@@ -32,11 +35,16 @@ struct AlignmentConfig {
 struct Alignment {
   Estimate estimate{};
   ErrorMatrix P{ErrorMatrix::Zero()};
+  /// Beside P the attitude is uncertain by a turn about this axis (ECEF, unit): what levelling
+  /// leaves open.
+  Eigen::Vector3d axis_e{Eigen::Vector3d::UnitZ()};
+  double turn_sigma_rad{0.0};
 };
 
-/// Collects IMU data and fixes until the vehicle moves fast enough for its course to be its
-/// heading. A long wait at a standstill with unknown heading is normal: it yields the gyro bias. No
-/// heap, no exceptions after construction.
+/// Collects IMU data and fixes until the attitude can be told. With heading from course that is
+/// when the vehicle moves fast enough; a long wait at a standstill is normal, and yields the gyro
+/// bias. Without, it is levelled after a rest, or on the move by two fixes in a row, and its heading
+/// is left open. No heap, no exceptions after construction.
 class Aligner {
  public:
   /// @throws Error when the configuration is invalid.
@@ -50,8 +58,10 @@ class Aligner {
   std::optional<Alignment> push(const GnssFix& fix);
 
  private:
-  void watch_rest(const GnssVelocity& velocity);
-  Alignment align(const GnssFix& fix, const GnssVelocity& before) const;
+  bool watch_rest(const GnssVelocity& velocity);
+  Alignment align_by_course(const GnssFix& fix, const GnssVelocity& before) const;
+  Alignment level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const;
+  void set_rest_bias(Alignment& alignment) const;
 
   struct Sum {
     double dt_s{0.0};

@@ -8,6 +8,7 @@
 
 #include "leeway/filters/error_state.hpp"
 #include "leeway/filters/transition.hpp"
+#include "leeway/filters/vehicle_state.hpp"
 #include "leeway/imu_error_model.hpp"
 
 namespace leeway {
@@ -33,10 +34,14 @@ ProcessNoise process_noise(const ImuErrorModel& model);
 /// Source: Groves (2013) (3.46), "Phi (P + Q/2) Phi^T + Q/2".
 void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise);
 
+/// Phi C: what becomes of the covariance of the 15 errors with constants.
+VehicleCross transported(const Transition& Phi, const VehicleCross& C);
+
 /// A scalar measurement of unit variance: z = h x + noise.
 /// P <- (I - K h) P (I - K h)^T + K K^T, evaluated as two products (Joseph's form, not its
 /// expansion); x_hat <- x_hat + K (z - h x_hat).
 /// @returns the innovation variance h P h^T + 1.
 double scalar_update(ErrorMatrix& P, ErrorVector& x_hat, const ErrorVector& h, double z);
+double scalar_update(JointMatrix& P, JointVector& x_hat, const JointVector& h, double z);
 
 }  // namespace leeway

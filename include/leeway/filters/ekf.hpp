@@ -8,7 +8,9 @@
 
 #include "leeway/filters/covariance.hpp"
 #include "leeway/filters/error_state.hpp"
+#include "leeway/filters/measurement.hpp"
 #include "leeway/filters/transition.hpp"
+#include "leeway/filters/vehicle_state.hpp"
 #include "leeway/gnss_fix.hpp"
 #include "leeway/imu.hpp"
 #include "leeway/imu_class.hpp"
@@ -51,8 +53,17 @@ struct UpdateReport {
   int dof{0};                      ///< components of the fix
   double nis{0.0};                 ///< normalized innovation squared of the whole fix, by its own R
   double gate{0.0};                ///< the NIS above which it is refused
+  double position_nis{0.0};        ///< of the position alone, 3 components; 0 where there is none
+  double velocity_nis{0.0};
   double log_det_S{0.0};           ///< of the innovation's covariance; with the NIS, the likelihood
   bool covariance_positive{true};  ///< no diagonal element and no innovation variance <= 0
+};
+
+/// What the monitor of a receiver makes of its claims: factors on the standard deviations of
+/// position and velocity.
+struct FixTrust {
+  double position_sigma_scale{1.0};
+  double velocity_sigma_scale{1.0};
 };
 
 /// Owns the estimate, its covariance and the transition since it was last propagated. predict,
@@ -74,12 +85,38 @@ class Ekf {
 
   /// Gates the whole fix, then fuses it by sequential scalar updates. @pre fix.time equals
   /// estimate().nav.time.
-  UpdateReport update(const GnssFix& fix);
+  /// @param trust  what the fix is weighted by beyond its own R and the correlation time
+  UpdateReport update(const GnssFix& fix, const FixTrust& trust = {});
+
+  /// The same for any measurement at the time of the estimate. @pre m.R is positive definite.
+  UpdateReport update(const Measurement& m);
 
   const Estimate& estimate() const { return estimate_; }
 
   /// Covariance at the estimate's time. Reading it changes nothing.
   ErrorMatrix covariance() const;
+
+  /// From now on the parameters of the vehicle are estimated too.
+  /// @pre P symmetric positive semidefinite, everything finite.
+  void estimate_vehicle(const VehicleState& vehicle);
+  bool estimates_vehicle() const { return estimates_vehicle_; }
+  const VehicleState& vehicle() const { return vehicle_; }
+
+  /// Renames the body axes: what was v_b is C_new_old * v_b. The vehicle's parameters are forgotten.
+  /// @param lever_arm_b_m  IMU to antenna in the new axes
+  void turn_body_axes(const Eigen::Matrix3d& C_new_old, const Eigen::Vector3d& lever_arm_b_m);
+
+  /// Multiplies the covariance: what the filter knows has proved wrong. @pre factor >= 1.
+  void widen(double factor);
+
+  /// Position and velocity anew, independent of everything else; attitude and biases stay.
+  /// @pre everything finite, covariances symmetric positive definite.
+  void restart_motion(const Eigen::Vector3d& r_e_m, const Eigen::Matrix3d& P_rr_m2,
+                      const Eigen::Vector3d& v_e_mps, const Eigen::Matrix3d& P_vv_m2ps2);
+
+  /// Whether P is positive definite. If not, its negative directions are raised to a billionth of
+  /// their scale. @returns whether there was nothing to repair.
+  bool repair_covariance();
 
   const EkfConfig& config() const { return config_; }
   const ProcessNoise& noise() const { return noise_; }
@@ -90,9 +127,14 @@ class Ekf {
   const Eigen::Vector3d& mean_omega_ib_b_radps() const { return mean_omega_ib_b_radps_; }
   static constexpr double kMeanRateS = 5.0;
 
+  /// Measured rate (bias not removed) of the newest increment; zero before any data.
+  const Eigen::Vector3d& omega_ib_b_radps() const { return omega_ib_b_radps_; }
+
  private:
   void flush();
   double position_weight(Time t) const;
+  UpdateReport judge(const Measurement& m);
+  void fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights);
 
   EkfConfig config_;
   ProcessNoise noise_;
@@ -100,6 +142,8 @@ class Ekf {
   std::array<double, 7> gate_{};  // by degrees of freedom
   Estimate estimate_;
   ErrorMatrix P_;
+  VehicleState vehicle_{};
+  bool estimates_vehicle_{false};
   Transition Phi_{};
   Eigen::Matrix3d gravity_gradient_e_{Eigen::Matrix3d::Zero()};  // where Phi_ begins
   ImuHistory history_{};

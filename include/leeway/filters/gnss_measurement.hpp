@@ -1,24 +1,15 @@
 /// @file
-/// The measurement model of a GNSS fix: innovation, H and R, lever arm in all of them.
+/// The measurement model of a GNSS fix, lever arm included.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
 
 #include "leeway/filters/error_state.hpp"
+#include "leeway/filters/measurement.hpp"
 #include "leeway/gnss_fix.hpp"
 
 namespace leeway {
-
-/// z = H x + noise, one row per component; 3 rows for a position or a velocity, 6 for both,
-/// position first. Fixed storage.
-struct GnssMeasurement {
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> innovation;
-  Eigen::Matrix<double, Eigen::Dynamic, kErrorStates, 0, 6, kErrorStates> H;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> R;
-
-  int rows() const { return static_cast<int>(innovation.size()); }
-};
 
 /// Where the antenna is and how fast, for an estimate.
 /// @param lever_arm_b_m     IMU to antenna, body axes
@@ -35,10 +26,11 @@ inline double gnss_position_weight(double dt_s, double correlation_s) {
   return correlation_s > 0.0 ? std::sqrt(std::tanh(0.5 * dt_s / correlation_s)) : 1.0;
 }
 
-/// Linearizes the fix about the estimate. @pre is_usable(fix), fix.time is the estimate's time.
+/// Linearizes the fix about the estimate: 3 rows for a position or a velocity, 6 for both, position
+/// first. @pre is_usable(fix), fix.time is the estimate's time.
 /// Source: Groves (2013) (14.104)-(14.111), ECEF form, signs by error_state.hpp.
-GnssMeasurement gnss_measurement(const GnssFix& fix, const Estimate& estimate,
-                                 const Eigen::Vector3d& lever_arm_b_m,
-                                 const Eigen::Vector3d& omega_ib_b_radps);
+Measurement gnss_measurement(const GnssFix& fix, const Estimate& estimate,
+                             const Eigen::Vector3d& lever_arm_b_m,
+                             const Eigen::Vector3d& omega_ib_b_radps);
 
 }  // namespace leeway

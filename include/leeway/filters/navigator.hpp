@@ -3,94 +3,77 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
-#include "leeway/filters/alignment.hpp"
-#include "leeway/filters/ekf.hpp"
+#include "leeway/filters/health.hpp"
+#include "leeway/filters/history.hpp"
+#include "leeway/filters/imu_clock.hpp"
+#include "leeway/filters/navigator_config.hpp"
 #include "leeway/filters/time_to_limit.hpp"
+#include "leeway/filters/verdict.hpp"
+#include "leeway/gnss_fix.hpp"
+#include "leeway/imu.hpp"
+#include "leeway/solution.hpp"
+#include "leeway/vehicle_sensors.hpp"
 
 namespace leeway {
 
-/// What became of an input. Bad data is an outcome, not an error: it is counted and changes nothing
-/// else, except that a gap in the IMU data is bridged.
-enum class Verdict {
-  kAccepted,     ///< IMU: integrated; GNSS: waits for the IMU data of its time
-  kAligning,     ///< taken for alignment; there is no solution yet
-  kFused,        ///< the fix corrected the state
-  kGated,        ///< the fix was too far from the prediction for both to be right
-  kGap,          ///< IMU data was missing for longer than max_gap_s: bridged by coasting
-  kLate,         ///< the fix is older than the newest IMU data
-  kDuplicate,    ///< same time as the newest of its kind
-  kOutOfOrder,   ///< older than the newest of its kind
-  kNotFinite,    ///< NaN or infinity
-  kImplausible,  ///< beyond what the sensor can measure, or not a covariance
-  kOverflow,     ///< more fixes wait for IMU data than there is room for
-};
-
-inline constexpr std::size_t kVerdicts = 11;
-
-std::string_view name(Verdict verdict);
-
-struct NavigatorConfig {
-  EkfConfig filter{};
-  AlignmentConfig alignment{};
-  double max_gap_s{0.5};         ///< longer holes in the IMU data are coasted through
-  double max_rate_radps{100.0};  ///< beyond this an IMU reading is implausible
-  double max_force_mps2{1000.0};
-};
-
-/// Aligns, integrates, fuses. Inputs come in the order of their times; a fix may come up to any
-/// time ahead of the IMU data that covers it, and acts at its own time, between samples. push
-/// allocates nothing, throws nothing, logs nothing. A Navigator is a value: a copy goes its own
-/// way.
+/// Aligns, integrates, fuses. IMU data comes in the order of its time; measurements come in any
+/// order, up to max_lateness_s late or max_ahead_s early, and act at their own time, between
+/// samples: the solution does not depend on when they arrive. push allocates nothing, throws
+/// nothing, logs nothing, and its answer is counted. A Navigator is a value: a copy goes its own
+/// way, and allocates.
 class Navigator {
  public:
   /// @throws Error when the configuration is invalid.
   explicit Navigator(const NavigatorConfig& config);
 
-  /// Starts from a known state instead of aligning. @throws Error when state or P is invalid.
+  /// Starts from a known state instead of aligning. A heading sigma above 15 deg becomes a bank of
+  /// headings. @throws Error when state or P is invalid; then nothing has changed.
   void start(const Estimate& estimate, const ErrorMatrix& P);
 
+  /// Sensor axes. Either increments or samples, not both by turns.
   Verdict push(const ImuIncrement& inc);
+  Verdict push(const ImuSample& sample);
+
   Verdict push(const GnssFix& fix);
+  Verdict push(const OdometerSpeed& odometer);
+  Verdict push(const BarometricHeight& barometer);
 
-  bool aligned() const { return filter_.has_value(); }
+  bool aligned() const { return fusion().aligned(); }
 
-  /// At the newest IMU time. @pre aligned().
+  /// At the newest IMU time, with one sigma. @pre aligned().
   Solution solution() const;
-  const Ekf& filter() const { return *filter_; }
+
+  /// The filter, the likeliest one while several headings are possible. @pre aligned().
+  const Ekf& filter() const { return fusion().bank().best(); }
 
   /// How long from the newest IMU time, without another fix, the horizontal error stays within the
   /// limit with the given probability (time_to_limit); 0 before alignment.
   TimeToLimit leeway(double limit_m, double probability = 0.95) const {
-    return filter_ ? time_to_limit(*filter_, limit_m, probability) : TimeToLimit{};
+    return aligned() ? time_to_limit(filter(), limit_m, probability) : TimeToLimit{};
   }
 
-  /// The newest fix that reached the filter; dof 0 before the first.
-  const UpdateReport& last_update() const { return last_update_; }
+  Health health() const;
 
-  std::uint64_t count(Verdict verdict) const { return counts_[static_cast<std::size_t>(verdict)]; }
+  /// The newest fix that reached the filter; dof 0 before the first.
+  const UpdateReport& last_update() const { return fusion().last_update(); }
+
+  std::uint64_t count(Verdict verdict) const;
 
  private:
-  static constexpr std::size_t kMaxWaiting = 16;
-
+  const Fusion& fusion() const { return history_.fusion(); }
   Verdict counted(Verdict verdict);
   Verdict take(const ImuIncrement& inc);
-  void advance(const ImuIncrement& inc);
-  GnssFix take_waiting();
-  void apply(const GnssFix& fix);
+  Verdict judge(const ImuIncrement& inc) const;
+  Verdict take(const GnssFix& fix);
+  Verdict place(const Event& event);
 
   NavigatorConfig config_;
-  Aligner aligner_;
-  std::optional<Ekf> filter_{};
-  std::optional<Time> imu_time_{};
-  std::optional<Time> fix_time_{};
-  std::array<GnssFix, kMaxWaiting> waiting_{};
-  std::size_t waiting_count_{0};
-  UpdateReport last_update_{};
+  History history_;
+  ImuClock clock_;
+  std::optional<ImuSample> sample_{};
   std::array<std::uint64_t, kVerdicts> counts_{};
 };
 

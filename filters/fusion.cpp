@@ -1,0 +1,196 @@
+#include "leeway/filters/fusion.hpp"
+
+#include <cmath>
+
+#include "leeway/filters/vehicle_measurements.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr std::uint32_t kWidenFrom = 3;    // fixes refused in a row: chance alone does not do it
+constexpr std::uint32_t kRestartFrom = 10;
+constexpr double kWidening = 2.0;          // of P, at each of them
+constexpr double kRelapseS = 60.0;         // locked out again this soon: the attitude is wrong too
+
+AlignmentConfig alignment_of(const NavigatorConfig& config) {
+  AlignmentConfig alignment = config.alignment;
+  // A bank of headings with the non-holonomic constraint finds the course as the heading by itself,
+  // slip and turns included.
+  if (!config.C_bs || config.vehicle.non_holonomic) alignment.heading_from_course = false;
+  return alignment;
+}
+
+EkfConfig filter_of(const NavigatorConfig& config) {
+  EkfConfig filter = config.filter;
+  if (!config.C_bs) filter.lever_arm_b_m.setZero();  // where it points is not known yet
+  return filter;
+}
+
+ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
+  ImuIncrement result = inc;
+  result.dtheta_b_rad = C_bs * inc.dtheta_b_rad;
+  result.dv_b_mps = C_bs * inc.dv_b_mps;
+  return result;
+}
+
+}  // namespace
+
+Fusion::Fusion(const NavigatorConfig& config)
+    : config_(config),
+      aligner_(alignment_of(config), filter_of(config)),
+      aiding_(config.vehicle, config.filter.imu),
+      C_bs_(config.C_bs) {
+  validate(config);
+}
+
+void Fusion::start(const Estimate& estimate, const ErrorMatrix& P) {
+  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).col(2);
+  const double sigma_rad = std::sqrt(std::max(0.0, down_e.dot(P.block<3, 3>(kPsi, kPsi) * down_e)));
+  if (!(sigma_rad > HeadingBank::kOneFilterRad)) {
+    return begin(HeadingBank(Ekf(filter_of(config_), estimate, P)));
+  }
+  ErrorMatrix across = ErrorMatrix::Identity();
+  across.block<3, 3>(kPsi, kPsi) -= down_e * down_e.transpose();
+  begin(HeadingBank(filter_of(config_), estimate, across * P * across.transpose(), down_e,
+                    sigma_rad));
+}
+
+void Fusion::begin(const HeadingBank& bank) {
+  bank_ = bank;
+  last_fused_ = bank_->best().estimate().nav.time;
+  gated_in_a_row_ = 0;
+  gated_since_.reset();
+  if (C_bs_) begin_vehicle();
+}
+
+void Fusion::begin_vehicle() {
+  if (!config_.vehicle.uses_parameters()) return;
+  bank_->for_each([this](Ekf& filter) { filter.estimate_vehicle(vehicle_state(config_.vehicle)); });
+}
+
+void Fusion::integrate(const ImuIncrement& inc) {
+  const ImuIncrement in_body = C_bs_ ? turned(inc, *C_bs_) : inc;
+  if (!bank_) return aligner_.push(in_body);
+  bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
+  aiding_.push(in_body, *bank_);
+}
+
+void Fusion::bridge(Time to) {
+  if (!bank_) {
+    // What was collected before a hole says nothing about the attitude after it.
+    aligner_ = Aligner(alignment_of(config_), filter_of(config_));
+    return;
+  }
+  bank_->for_each([&](Ekf& filter) { filter.coast(to); });
+}
+
+Verdict Fusion::fuse(const GnssFix& fix) {
+  if (!bank_) {
+    align(fix);
+    return Verdict::kAligning;
+  }
+  const FixTrust trust{position_noise_.sigma_scale(), velocity_noise_.sigma_scale()};
+  last_update_ = bank_->update([&](Ekf& filter) { return filter.update(fix, trust); });
+  const Verdict verdict = settle(fix);
+  guard_numbers();
+  if (bank_ && !C_bs_ && bank_->collapsed()) find_mount();
+  return verdict;
+}
+
+void Fusion::align(const GnssFix& fix) {
+  const auto found = aligner_.push(fix);
+  if (!found) return;
+  begin(HeadingBank(filter_of(config_), found->estimate, found->P, found->axis_e,
+                    found->turn_sigma_rad));
+}
+
+Verdict Fusion::settle(const GnssFix& fix) {
+  using Outcome = UpdateReport::Outcome;
+  if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
+  if (bank_->collapsed()) {
+    if (fix.position) position_noise_.note(last_update_.position_nis, 3);
+    if (fix.velocity) velocity_noise_.note(last_update_.velocity_nis, 3);
+  }
+  if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
+  last_fused_ = fix.time;
+  gated_in_a_row_ = 0;
+  gated_since_.reset();
+  return Verdict::kFused;
+}
+
+Verdict Fusion::locked_out(const GnssFix& fix) {
+  if (gated_in_a_row_++ == 0) gated_since_ = fix.time;
+  if (gated_in_a_row_ < kWidenFrom) return Verdict::kGated;
+  if (gated_in_a_row_ < kRestartFrom || !fix.position || !fix.velocity) {
+    bank_->for_each([](Ekf& filter) { filter.widen(kWidening); });
+    return Verdict::kGated;
+  }
+  ++resets_;
+  const bool relapse = last_reset_ && to_seconds(fix.time - *last_reset_) < kRelapseS;
+  last_reset_ = fix.time;
+  if (relapse) {
+    realign();
+    return Verdict::kReset;
+  }
+  bank_->for_each([&](Ekf& filter) {
+    filter.restart_motion(fix.position->r_e_m, fix.position->R_e_m2, fix.velocity->v_e_mps,
+                          fix.velocity->R_e_m2ps2);
+  });
+  last_fused_ = fix.time;
+  gated_in_a_row_ = 0;
+  gated_since_.reset();
+  return Verdict::kReset;
+}
+
+void Fusion::realign() {
+  ++realignments_;
+  bank_.reset();
+  aligner_ = Aligner(alignment_of(config_), filter_of(config_));
+  C_bs_ = config_.C_bs;
+  mount_ = MountEstimator{};
+  gated_in_a_row_ = 0;
+  gated_since_.reset();
+}
+
+void Fusion::guard_numbers() {
+  if (!bank_) return;
+  bool finite = true;
+  bank_->for_each([&](Ekf& filter) {
+    const Estimate& estimate = filter.estimate();
+    finite = finite && estimate.nav.q_eb.coeffs().allFinite() && estimate.nav.v_e_mps.allFinite() &&
+             estimate.nav.r_e_m.allFinite() && filter.covariance().allFinite();
+    if (finite && !filter.repair_covariance()) ++repairs_;
+  });
+  if (!finite) realign();
+}
+
+void Fusion::find_mount() {
+  mount_.push(bank_->best());
+  const auto C_bs = mount_.C_bs();
+  if (!C_bs) return;
+  bank_->best().turn_body_axes(*C_bs, config_.filter.lever_arm_b_m);
+  C_bs_ = C_bs;
+  begin_vehicle();
+}
+
+Verdict Fusion::fuse(const OdometerSpeed& odometer) {
+  if (!config_.vehicle.odometer) return Verdict::kUnused;
+  if (!bank_ || !C_bs_) return Verdict::kAligning;
+  const UpdateReport report = bank_->update([&](Ekf& filter) {
+    return filter.update(odometer_speed(odometer.speed_mps, odometer.sigma_mps, filter.estimate(),
+                                        filter.vehicle().value, filter.omega_ib_b_radps()));
+  });
+  return report.outcome == UpdateReport::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
+}
+
+Verdict Fusion::fuse(const BarometricHeight& barometer) {
+  if (!config_.vehicle.barometer) return Verdict::kUnused;
+  if (!bank_ || !C_bs_) return Verdict::kAligning;
+  const UpdateReport report = bank_->update([&](Ekf& filter) {
+    return filter.update(barometric_height(barometer.height_m, barometer.sigma_m,
+                                           filter.estimate(), filter.vehicle().value));
+  });
+  return report.outcome == UpdateReport::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
+}
+
+}  // namespace leeway

@@ -1,0 +1,88 @@
+/// @file
+/// What a navigator carries through time: alignment, filter, aiding and their monitors, fed in the
+/// order of time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "leeway/filters/alignment.hpp"
+#include "leeway/filters/heading_bank.hpp"
+#include "leeway/filters/mount_estimator.hpp"
+#include "leeway/filters/navigator_config.hpp"
+#include "leeway/filters/noise_scale.hpp"
+#include "leeway/filters/vehicle_aiding.hpp"
+#include "leeway/filters/verdict.hpp"
+#include "leeway/vehicle_sensors.hpp"
+
+namespace leeway {
+
+/// The state behind a Navigator, without its queues: a value, so that a copy is a point in time to
+/// come back to. Nothing allocates or throws after construction; same inputs give the same bits.
+class Fusion {
+ public:
+  /// @throws Error when the configuration is invalid.
+  explicit Fusion(const NavigatorConfig& config);
+
+  /// From a known state; a heading with more than 15 deg of sigma becomes a bank of headings.
+  /// @throws Error when state or P is invalid.
+  void start(const Estimate& estimate, const ErrorMatrix& P);
+
+  /// @param inc  in sensor axes. @pre it follows what was integrated before.
+  void integrate(const ImuIncrement& inc);
+
+  /// Over time without IMU data. @pre to is later than what was integrated before.
+  void bridge(Time to);
+
+  /// At the time that integrate() and bridge() have reached. @pre is_usable.
+  Verdict fuse(const GnssFix& fix);
+  Verdict fuse(const OdometerSpeed& odometer);
+  Verdict fuse(const BarometricHeight& barometer);
+
+  bool aligned() const { return bank_.has_value(); }
+
+  /// @pre aligned().
+  const HeadingBank& bank() const { return *bank_; }
+
+  /// Sensor axes to body axes, as far as known.
+  const std::optional<Eigen::Matrix3d>& C_bs() const { return C_bs_; }
+
+  const UpdateReport& last_update() const { return last_update_; }
+  const std::optional<Time>& last_fused() const { return last_fused_; }
+  const std::optional<Time>& gated_since() const { return gated_since_; }
+  const NoiseScale& position_noise() const { return position_noise_; }
+  const NoiseScale& velocity_noise() const { return velocity_noise_; }
+  bool at_rest() const { return aiding_.at_rest(); }
+  std::uint32_t repairs() const { return repairs_; }
+  std::uint32_t resets() const { return resets_; }
+  std::uint32_t realignments() const { return realignments_; }
+
+ private:
+  void align(const GnssFix& fix);
+  void begin(const HeadingBank& bank);
+  void begin_vehicle();
+  void find_mount();
+  Verdict settle(const GnssFix& fix);
+  Verdict locked_out(const GnssFix& fix);
+  void realign();
+  void guard_numbers();
+
+  NavigatorConfig config_;
+  Aligner aligner_;
+  VehicleAiding aiding_;
+  MountEstimator mount_{};
+  NoiseScale position_noise_{};
+  NoiseScale velocity_noise_{};
+  std::optional<Eigen::Matrix3d> C_bs_;
+  std::optional<HeadingBank> bank_{};
+  UpdateReport last_update_{};
+  std::optional<Time> last_fused_{};   // fix
+  std::optional<Time> gated_since_{};  // the first of the fixes refused in a row
+  std::optional<Time> last_reset_{};
+  std::uint32_t gated_in_a_row_{0};
+  std::uint32_t repairs_{0};
+  std::uint32_t resets_{0};
+  std::uint32_t realignments_{0};
+};
+
+}  // namespace leeway

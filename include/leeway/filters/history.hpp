@@ -1,0 +1,91 @@
+/// @file
+/// The recent past: what came in, and points in time to come back to, so that a late measurement
+/// acts at its own time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "leeway/filters/fusion.hpp"
+#include "leeway/filters/ring_buffer.hpp"
+#include "leeway/gnss_fix.hpp"
+#include "leeway/imu.hpp"
+#include "leeway/vehicle_sensors.hpp"
+
+namespace leeway {
+
+/// A measurement, at the time it was valid. Those of one time act in the order of the variant.
+struct Event {
+  Time time{};
+  std::variant<GnssFix, OdometerSpeed, BarometricHeight> data{};
+  bool counts{true};  ///< false: the second half of a fix that was cut in two
+  bool done{false};   ///< fused up to the newest IMU data
+  Verdict verdict{Verdict::kAccepted};
+};
+
+/// IMU data over an interval of time, or none of it.
+struct Step {
+  ImuIncrement inc{};
+  bool is_gap{false};
+};
+
+/// Runs steps and events through a Fusion in the order of their times, whatever the order of their
+/// arrival: the state depends on what was measured, not on when it was heard of. Rewinds to a
+/// checkpoint at most max_lateness_s back. Allocates at construction only.
+class History {
+ public:
+  /// @throws Error when the configuration is invalid.
+  explicit History(const NavigatorConfig& config);
+
+  /// Forgets everything and goes on from here. Events from before are late.
+  void restart(const Fusion& fusion, Time now);
+
+  /// @pre step.inc.time is later than every step before and step.inc reaches back to the last one.
+  void push(const Step& step);
+
+  enum class Place { kAhead, kWithin, kLate, kDuplicate, kFull };
+
+  /// Takes an event, and if it lies in the past goes back for it.
+  Place push(const Event& event);
+
+  /// The verdict on the event of this time and kind.
+  Verdict verdict(const Event& event) const;
+
+  const Fusion& fusion() const { return fusion_; }
+  const std::optional<Time>& now() const { return now_; }
+
+  /// Called for every event that gets its verdict, and with the one it had when it gets another.
+  struct Ledger {
+    std::uint64_t counts[kVerdicts]{};
+  };
+  const Ledger& ledger() const { return ledger_; }
+
+ private:
+  struct Checkpoint {
+    Fusion fusion;
+    Time time{};
+    std::uint64_t next_step{0};  // counted from the first ever
+  };
+
+  static constexpr double kCheckpointS = 0.25;
+
+  void run(const Step& step);
+  void integrate(const Step& step, Time to, ImuIncrement& rest);
+  void decide(Event& event);
+  void rewind(std::size_t checkpoint);
+  void keep_checkpoint();
+  void forget_old();
+  std::size_t place_of(const Event& event) const;
+
+  NavigatorConfig config_;
+  Fusion fusion_;
+  RingBuffer<Step> steps_;
+  RingBuffer<Event> events_;  // by time, then kind
+  RingBuffer<Checkpoint> checkpoints_;
+  std::uint64_t steps_forgotten_{0};
+  std::optional<Time> now_{};
+  Ledger ledger_{};
+};
+
+}  // namespace leeway
