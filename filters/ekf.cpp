@@ -207,6 +207,8 @@ UpdateReport Ekf::update(const GnssFix& fix, const FixTrust& trust) {
   UpdateReport report = judge(m);
   if (!fix.velocity) report.position_nis = report.nis;
   if (!fix.position) report.velocity_nis = report.nis;
+  if (fix.position) report.position_innovation_e_m = m.innovation.head<3>();
+  if (fix.velocity) report.velocity_innovation_e_mps = m.innovation.tail<3>();
   if (report.outcome != UpdateReport::Outcome::kFused) return report;
   fuse(m, weights);
   if (fix.position) last_position_fix_ = fix.time;
@@ -233,6 +235,11 @@ void Ekf::widen(double factor) {
   P_ *= factor;
   vehicle_.P *= factor;
   vehicle_.cross *= factor;
+}
+
+void Ekf::widen_position(double variance_m2) {
+  flush();
+  P_.diagonal().segment<3>(kDr).array() += variance_m2;
 }
 
 void Ekf::turn_body_axes(const Eigen::Matrix3d& C_new_old, const Eigen::Vector3d& lever_arm_b_m) {

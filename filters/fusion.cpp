@@ -1,3 +1,5 @@
+#include <cstdlib>
+#include <cstdio>
 #include "leeway/filters/fusion.hpp"
 
 #include <cmath>
@@ -93,7 +95,7 @@ Verdict Fusion::fuse(const GnssFix& fix) {
   last_update_ = bank_->update([&](Ekf& filter) { return filter.update(fix, trust); });
   const Verdict verdict = settle(fix);
   guard_numbers();
-  if (bank_ && !C_bs_ && bank_->collapsed()) find_mount();
+  if (bank_ && !C_bs_) find_mount();
   return verdict;
 }
 
@@ -108,14 +110,28 @@ Verdict Fusion::settle(const GnssFix& fix) {
   using Outcome = UpdateReport::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
   if (bank_->collapsed()) {
-    if (fix.position) position_noise_.note(last_update_.position_nis, 3);
-    if (fix.velocity) velocity_noise_.note(last_update_.velocity_nis, 3);
+    if (fix.position) {
+      position_noise_.note(fix.time, last_update_.position_innovation_e_m, fix.position->R_e_m2,
+                           last_update_.position_nis);
+    }
+    if (fix.velocity) {
+      velocity_noise_.note(fix.time, last_update_.velocity_innovation_e_mps,
+                           fix.velocity->R_e_m2ps2, last_update_.velocity_nis);
+    }
+    follow_drift();
   }
   if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
   last_fused_ = fix.time;
   gated_in_a_row_ = 0;
   gated_since_.reset();
   return Verdict::kFused;
+}
+
+void Fusion::follow_drift() {
+  static const double fr = std::getenv("FR") ? std::atof(std::getenv("FR")) : 2.0;
+  static const double fg = std::getenv("FG") ? std::atof(std::getenv("FG")) : 0.1;
+  if (position_noise_.nis_ratio() < fr) return;
+  bank_->best().widen_position(fg * last_update_.position_innovation_e_m.squaredNorm() / 3.0);
 }
 
 Verdict Fusion::locked_out(const GnssFix& fix) {
@@ -165,10 +181,12 @@ void Fusion::guard_numbers() {
 }
 
 void Fusion::find_mount() {
-  mount_.push(bank_->best());
+  mount_.push(*bank_);
   const auto C_bs = mount_.C_bs();
+  if (std::getenv("DUMPM")) { const ErrorMatrix P = bank_->best().covariance(); std::fprintf(stderr, "MNT t %.1f psi sigma deg %.2f v %.1f found %d\n", to_seconds(bank_->best().estimate().nav.time), std::sqrt(P.diagonal().head<3>().maxCoeff())*57.3, bank_->best().estimate().nav.v_e_mps.norm(), C_bs?1:0); }
   if (!C_bs) return;
-  bank_->best().turn_body_axes(*C_bs, config_.filter.lever_arm_b_m);
+  bank_->for_each(
+      [&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
   begin_vehicle();
 }

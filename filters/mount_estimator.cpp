@@ -7,8 +7,9 @@
 
 namespace leeway {
 
-void MountEstimator::push(const Ekf& filter) {
+void MountEstimator::push(const HeadingBank& bank) {
   constexpr double kLongestStepS = 1.0;
+  const Ekf& filter = bank.best();
   const NavState& nav = filter.estimate().nav;
   const double step_s =
       previous_ ? std::min(to_seconds(nav.time - *previous_), kLongestStepS) : 0.0;
@@ -17,7 +18,7 @@ void MountEstimator::push(const Ekf& filter) {
   const Eigen::Vector3d rate = filter.mean_omega_ib_b_radps() - filter.estimate().bias.b_g_radps;
   if (speed_mps < kMinSpeedMps || rate.norm() > kMaxTurnRadps) return;
   const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).col(2);
-  const ErrorMatrix P = filter.covariance();
+  const ErrorMatrix P = bank.covariance();
   const double heading_variance = down_e.dot(P.block<3, 3>(kPsi, kPsi) * down_e);
   if (heading_variance > kMaxHeadingSigmaRad * kMaxHeadingSigmaRad) return;
   const Eigen::Quaterniond q_be = nav.q_eb.conjugate();

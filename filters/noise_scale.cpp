@@ -1,5 +1,6 @@
 #include "leeway/filters/noise_scale.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -7,23 +8,36 @@ namespace leeway {
 namespace {
 
 constexpr double kWindow = 30.0;
-constexpr double kLargestRatio = 4.0;  // of one fix: a single outlier is the gate's business
-constexpr double kBandLow = 0.5;       // 90 degrees of freedom stay within with 99.99 %
+constexpr double kLargestRatio = 4.0;      // of one fix: a single outlier is the gate's business
+constexpr double kBandLow = 0.5;           // 90 degrees of freedom stay within with 99.99 %
 constexpr double kBandHigh = 1.6;
-constexpr double kSmallestScale = 0.5;
 constexpr double kLargestScale = 10.0;
+constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's own error changes too
+
+/// Exponential mean that starts as the plain one.
+void average(double& mean, std::int64_t& count, double value) {
+  ++count;
+  mean += (value - mean) / std::min(static_cast<double>(count), kWindow);
+}
 
 }  // namespace
 
-void NoiseScale::note(double nis, int dof) {
-  const double ratio = std::min(nis / dof, kLargestRatio);
-  ++count_;
-  const double window = std::min(static_cast<double>(count_), kWindow);
-  nis_ratio_ += (ratio - nis_ratio_) / window;
-  if (window < kWindow || (nis_ratio_ > kBandLow && nis_ratio_ < kBandHigh)) return;
-  // Towards the scale at which the mean is 1, over a window, since S holds more than R.
-  const double step = 0.5 * (std::min(nis_ratio_, 2.0) - 1.0) / kWindow;
-  sigma_scale_ = std::clamp(sigma_scale_ * std::exp(step), kSmallestScale, kLargestScale);
+void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
+                      double nis) {
+  average(nis_ratio_, nis_count_, nis / 3.0);
+  const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
+  const Eigen::Vector3d change = innovation - previous_innovation_;
+  previous_ = t;
+  previous_innovation_ = innovation;
+  if (!in_a_row) return;
+  const double expected = 2.0 * 3.0 * sigma_scale_ * sigma_scale_;
+  const double ratio = change.dot(R.llt().solve(change)) / expected;
+  average(change_ratio_, change_count_, std::min(ratio, kLargestRatio));
+  if (static_cast<double>(change_count_) < kWindow) return;
+  if (change_ratio_ > kBandLow && change_ratio_ < kBandHigh) return;
+  // Towards the scale at which the mean is 1, in about a window.
+  const double step = 0.5 * (std::min(change_ratio_, 2.0) - 1.0) / kWindow;
+  sigma_scale_ = std::clamp(sigma_scale_ * std::exp(step), smallest_, kLargestScale);
 }
 
 }  // namespace leeway

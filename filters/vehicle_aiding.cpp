@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <cstdio>
 #include "leeway/filters/vehicle_measurements.hpp"
 
 namespace leeway {
@@ -50,6 +51,8 @@ void VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
   const auto block = blocks_.push(inc);
   if (!block) return;
   at_rest_ = standstill_.push(*block, bank.best());
+  a_e_ = (bank.best().estimate().nav.v_e_mps - v_e_) / block->dt_s;
+  v_e_ = bank.best().estimate().nav.v_e_mps;
   at_rest_ ? rest(*block, bank) : roll(*block, bank);
 }
 
@@ -76,10 +79,14 @@ void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
   const double turn_radps =
       (block.mean_omega_ib_b_radps - bank.best().estimate().bias.b_g_radps).norm();
   const double right_mps =
-      std::hypot(config_.right_sigma_mps, config_.right_sigma_s * speed_mps * turn_radps);
+      std::hypot(std::hypot(config_.right_sigma_mps, env("RW", 0.0) * turn_radps), config_.right_sigma_s * speed_mps * turn_radps, bank.collapsed() ? 0.0 : env("BO", 0.5) + env("BT", 1.0) * turn_radps);
   const double down_mps = config_.down_sigma_mps * std::pow(10.0 / speed_mps, env("DP", 0.0));
+  if (std::getenv("DUMP") && bank.collapsed()) { const auto m = non_holonomic(bank.best().estimate(), bank.best().vehicle().value, bank.best().omega_ib_b_radps(), right_mps, down_mps); std::fprintf(stderr, "NHC %.3f %.3f %.4f %.4f %.4f %.5f %.5f %.3f\n", to_seconds(block.time), speed_mps, turn_radps, m.innovation(0), m.innovation(1), bank.best().vehicle().value(0), bank.best().vehicle().value(1), bank.best().vehicle().value(2)); }
   bank.update([&](Ekf& filter) {
-    return filter.update(non_holonomic(filter.estimate(), filter.vehicle().value,
+    VehicleVector vv = filter.vehicle().value;
+    static const double sq = env("SQ", 0.0);
+    vv(kMountPitch) -= sq * (filter.estimate().nav.q_eb.conjugate() * a_e_).x();
+    return filter.update(non_holonomic(filter.estimate(), vv,
                                        filter.omega_ib_b_radps(), right_mps, down_mps));
   });
 }

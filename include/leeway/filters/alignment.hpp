@@ -28,7 +28,7 @@ struct AlignmentConfig {
   double rest_speed_mps{0.2};      ///< below this a fix counts as at rest
   double rest_turn_rad{0.01};      ///< ... if the IMU turned less than this since the fix before,
                                    ///< beyond its turn-on bias
-  double min_rest_s{3.0};          ///< a rest this long gives the gyro bias
+  double min_rest_s{1.0};          ///< a rest this long gives the gyro bias
 };
 
 /// What an alignment found: a start for the filter.

@@ -53,8 +53,10 @@ struct UpdateReport {
   int dof{0};                      ///< components of the fix
   double nis{0.0};                 ///< normalized innovation squared of the whole fix, by its own R
   double gate{0.0};                ///< the NIS above which it is refused
-  double position_nis{0.0};        ///< of the position alone, 3 components; 0 where there is none
+  double position_nis{0.0};        ///< of a fix's position alone, 3 components; else 0
   double velocity_nis{0.0};
+  Eigen::Vector3d position_innovation_e_m{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d velocity_innovation_e_mps{Eigen::Vector3d::Zero()};
   double log_det_S{0.0};           ///< of the innovation's covariance; with the NIS, the likelihood
   bool covariance_positive{true};  ///< no diagonal element and no innovation variance <= 0
 };
@@ -108,6 +110,9 @@ class Ekf {
 
   /// Multiplies the covariance: what the filter knows has proved wrong. @pre factor >= 1.
   void widen(double factor);
+
+  /// Adds to the variance of every component of the position.
+  void widen_position(double variance_m2);
 
   /// Position and velocity anew, independent of everything else; attitude and biases stay.
   /// @pre everything finite, covariances symmetric positive definite.

@@ -63,6 +63,7 @@ class Fusion {
   void begin_vehicle();
   void find_mount();
   Verdict settle(const GnssFix& fix);
+  void follow_drift();
   Verdict locked_out(const GnssFix& fix);
   void realign();
   void guard_numbers();
@@ -71,8 +72,8 @@ class Fusion {
   Aligner aligner_;
   VehicleAiding aiding_;
   MountEstimator mount_{};
-  NoiseScale position_noise_{};
-  NoiseScale velocity_noise_{};
+  NoiseScale position_noise_{1.0};   // its errors are those of the fix before
+  NoiseScale velocity_noise_{0.5};
   std::optional<Eigen::Matrix3d> C_bs_;
   std::optional<HeadingBank> bank_{};
   UpdateReport last_update_{};

@@ -5,12 +5,12 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "leeway/filters/ekf.hpp"
+#include "leeway/filters/heading_bank.hpp"
 #include "leeway/time.hpp"
 
 namespace leeway {
 
-/// Of a filter whose body axes are the sensor's. Forward is where the vehicle goes when it goes fast
+/// Of filters whose body axes are the sensor's. Forward is where the vehicle goes when it goes fast
 /// and straight; down is where gravity pulls, once the slope of the road is taken out along forward.
 /// A vehicle that reverses slower than 5 m/s is not mistaken. No heap, no exceptions.
 class MountEstimator {
@@ -20,8 +20,8 @@ class MountEstimator {
   static constexpr double kMaxHeadingSigmaRad = 0.05;
   static constexpr double kEnoughS = 5.0;
 
-  /// After a fix has been fused. @param filter  its heading need not be known yet
-  void push(const Ekf& filter);
+  /// After a fix has been fused. What counts is the heading of the whole bank.
+  void push(const HeadingBank& bank);
 
   /// Sensor axes to body axes (forward, right, down), once it is known to a few degrees.
   std::optional<Eigen::Matrix3d> C_bs() const;

@@ -2,33 +2,49 @@
 /// What the innovations say of a sensor's claimed noise.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
+
+#include "leeway/time.hpp"
 
 namespace leeway {
 
-/// A factor on the standard deviations that a receiver claims, learned from the normalized
-/// innovations: up to 10 when it is over-confident, down to a half when it is modest. Within a band
-/// around 1 of their mean the claim is left alone. Not further down: errors that are alike from fix
-/// to fix look small in the innovations, and are not (docs/theory/fix_monitor.md).
+/// A factor on the standard deviations that a receiver claims, learned from how much the
+/// innovations change from one fix to the next: that is its noise, while what they have in common is
+/// an error that lasts, the receiver's or the filter's. Up to 10 when the receiver is over-confident;
+/// within a band around 1 the claim is left alone. Source: docs/theory/noise_scale.md.
 class NoiseScale {
  public:
+  /// @param smallest  how far down a modest claim may be scaled, at most 1. Errors that are alike
+  ///                  from fix to fix do not show here, and count.
+  explicit NoiseScale(double smallest) : smallest_(smallest) {}
+
   double sigma_scale() const { return sigma_scale_; }
 
   /// Mean of nis / dof over the last 30 fixes or so, by the scaled claim; 1 before any.
   double nis_ratio() const { return nis_ratio_; }
 
-  /// Of a fix judged with the present scale, fused or gated.
-  void note(double nis, int dof);
+  /// Of three components judged with the present scale, fused or gated.
+  /// @param innovation  measured - predicted
+  /// @param R           as claimed, not scaled
+  void note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, double nis);
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(sigma_scale_, nis_ratio_, count_);
+    archive(sigma_scale_, nis_ratio_, change_ratio_, nis_count_, change_count_, previous_,
+            previous_innovation_);
   }
 
  private:
+  double smallest_;
   double sigma_scale_{1.0};
   double nis_ratio_{1.0};
-  std::int64_t count_{0};
+  double change_ratio_{1.0};  // of squared changes to their expectation
+  std::int64_t nis_count_{0};
+  std::int64_t change_count_{0};
+  std::optional<Time> previous_{};
+  Eigen::Vector3d previous_innovation_{Eigen::Vector3d::Zero()};
 };
 
 }  // namespace leeway

@@ -66,6 +66,8 @@ class VehicleAiding {
   ImuBlocks blocks_{};
   StandstillDetector standstill_;
   bool at_rest_{false};
+  Eigen::Vector3d a_e_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d v_e_{Eigen::Vector3d::Zero()};
 };
 
 }  // namespace leeway
