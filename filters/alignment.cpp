@@ -11,6 +11,8 @@
 namespace leeway {
 namespace {
 
+constexpr double kLongestLagS = 0.3;  // between the halves of a fix
+
 void require_positive(double value, const char* field) {
   if (std::isfinite(value) && value > 0.0) return;
   throw Error(std::string("alignment: ") + field + " is " + std::to_string(value) +
@@ -47,7 +49,21 @@ void Aligner::push(const ImuIncrement& inc) {
 }
 
 std::optional<Alignment> Aligner::push(const GnssFix& fix) {
-  if (!fix.velocity) return std::nullopt;
+  if (fix.position && fix.velocity) return take(fix);
+  const bool completes = half_ && half_->position.has_value() == fix.velocity.has_value() &&
+                         to_seconds(fix.time - half_->time) <= kLongestLagS;
+  if (!completes) {
+    half_ = fix;
+    return std::nullopt;
+  }
+  GnssFix whole = fix;
+  if (!whole.position) whole.position = half_->position;
+  if (!whole.velocity) whole.velocity = half_->velocity;
+  half_.reset();
+  return take(whole);
+}
+
+std::optional<Alignment> Aligner::take(const GnssFix& fix) {
   const bool in_a_row = previous_ && since_fix_.dt_s > 0.0 &&
                         to_seconds(fix.time - previous_->time) <= config_.max_fix_interval_s;
   std::optional<Alignment> result;

@@ -1,7 +1,6 @@
-#include <cstdlib>
-#include <cstdio>
 #include "leeway/filters/fusion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "leeway/filters/vehicle_measurements.hpp"
@@ -128,10 +127,13 @@ Verdict Fusion::settle(const GnssFix& fix) {
 }
 
 void Fusion::follow_drift() {
-  static const double fr = std::getenv("FR") ? std::atof(std::getenv("FR")) : 2.0;
-  static const double fg = std::getenv("FG") ? std::atof(std::getenv("FG")) : 0.1;
-  if (position_noise_.nis_ratio() < fr) return;
-  bank_->best().widen_position(fg * last_update_.position_innovation_e_m.squaredNorm() / 3.0);
+  // Positions that keep away from the prediction by more than both claim, and agree with each
+  // other, are believed at last: a receiver that settles, or one that was wrong before.
+  constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
+  constexpr double kShare = 0.1;       // of the squared distance, at each fix
+  if (position_noise_.nis_ratio() < kDriftRatio) return;
+  bank_->best().widen_position(kShare / 3.0 *
+                               last_update_.position_innovation_e_m.squaredNorm());
 }
 
 Verdict Fusion::locked_out(const GnssFix& fix) {
@@ -183,7 +185,6 @@ void Fusion::guard_numbers() {
 void Fusion::find_mount() {
   mount_.push(*bank_);
   const auto C_bs = mount_.C_bs();
-  if (std::getenv("DUMPM")) { const ErrorMatrix P = bank_->best().covariance(); std::fprintf(stderr, "MNT t %.1f psi sigma deg %.2f v %.1f found %d\n", to_seconds(bank_->best().estimate().nav.time), std::sqrt(P.diagonal().head<3>().maxCoeff())*57.3, bank_->best().estimate().nav.v_e_mps.norm(), C_bs?1:0); }
   if (!C_bs) return;
   bank_->for_each(
       [&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });

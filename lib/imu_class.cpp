@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include "leeway/imu_class.hpp"
 
 #include <algorithm>
@@ -117,13 +116,12 @@ ImuClassification classify(const ImuErrorModel& model) {
 
 ImuErrorModel automotive_mems_model() {
   ImuErrorModel model;
-  auto env=[](const char*n,double d){const char*v=std::getenv(n);return v?std::atof(v):d;};
-  model.accelerometer.bias_sigma = env("AB",0.3);
-  model.accelerometer.noise_density = env("AN",0.1) * units::kMpsPerSqrtH.si;
-  model.accelerometer.in_run = {env("AI",0.03), 300.0};
+  model.accelerometer.bias_sigma = 0.3;
+  model.accelerometer.noise_density = 0.1 * units::kMpsPerSqrtH.si;
+  model.accelerometer.in_run = {0.03, 300.0};
   model.gyro.bias_sigma = 0.5 * units::kDegPerS.si;
-  model.gyro.noise_density = env("GN",0.3) * units::kDegPerSqrtH.si;
-  model.gyro.in_run = {env("GI",0.02) * units::kDegPerS.si, 300.0};
+  model.gyro.noise_density = 0.3 * units::kDegPerSqrtH.si;
+  model.gyro.in_run = {0.02 * units::kDegPerS.si, 300.0};
   return model;
 }
 

@@ -272,6 +272,12 @@ class Replay {
     const double fused = static_cast<double>(std::max<std::int64_t>(fused_, 1));
     result_.nis_mean /= fused;
     result_.nis_dof_mean /= fused;
+    result_.health = navigator_.health();
+    if (navigator_.C_bs()) {
+      const EulerAngles mount = euler_from_rotation(*navigator_.C_bs());
+      result_.mount_rpy_deg =
+          Eigen::Vector3d(mount.roll_rad, mount.pitch_rad, mount.yaw_rad) / kRadPerDeg;
+    }
     if (navigator_.aligned()) {
       result_.final_roll_deg =
           ned_from_nav_state(navigator_.filter().estimate().nav).attitude.roll_rad / kRadPerDeg;

@@ -46,7 +46,8 @@ bool is_answered(const FuseJob& job) {
 }
 
 /// @pre fuse_jobs() has opened the input: what fails from here on is the output.
-void replay(FuseJob& job, const NavigatorConfig& config) {
+void replay(FuseJob& job, NavigatorConfig config) {
+  if (job.estimates_mount) config.C_bs.reset();
   writing([&] {
     // Unclosed, it leaves nothing: this only tells early whether the file can be created.
     if (!job.input.solution.empty()) CsvWriter(job.input.solution, {"t_s"});
@@ -131,6 +132,27 @@ void add_filter_options(CLI::App& app, FuseOptions& options) {
       ->capture_default_str();
 }
 
+void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
+  app.add_option("--vehicle", vehicle.name,
+                 "car: use that it stands still at times and never slides sideways; without "
+                 "--mount the mount is estimated")
+      ->check(CLI::IsMember({"none", "car"}))
+      ->capture_default_str();
+  app.add_option("--without", vehicle.without, "switch a part of --vehicle off; may be repeated")
+      ->check(CLI::IsMember(vehicle_part_names()));
+  app.add_flag("--estimate-mount", vehicle.estimate_mount,
+               "estimate the mount even if one is given, as meta.json of a --drive does");
+}
+
+void add_timing_options(CLI::App& app, TimingConfig& timing) {
+  app.add_option("--position-lag-s", timing.position_lag_s,
+                 "GNSS positions are those of this long before their time, s")
+      ->capture_default_str();
+  app.add_option("--velocity-lag-s", timing.velocity_lag_s,
+                 "the same for velocities: half an epoch where they are means over one, s")
+      ->capture_default_str();
+}
+
 void add_output_options(CLI::App& app, FuseOutput& output) {
   app.add_option("--out", output.solution, "write the solution as CSV; gzip when it ends in .gz")
       ->type_name("FILE")
@@ -151,10 +173,13 @@ void add_fuse_command(CLI::App& program, int& exit_code) {
   const auto options = std::make_shared<FuseOptions>();
   add_log_options(*app, options->logs);
   add_filter_options(*app, *options);
+  add_vehicle_options(*app, options->vehicle);
+  add_timing_options(*app, options->timing);
   add_output_options(*app, options->output);
   app->footer(
       "Examples:\n"
       "  leeway fuse --imu imu.csv --gnss gnss.csv --truth truth.csv --out solution.csv\n"
+      "  leeway fuse --imu imu.csv --gnss gnss.csv --vehicle car\n"
       "  leeway fuse --drive drives/one --drive drives/two --json");
   app->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include "fuse_jobs.hpp"
 
 #include <algorithm>
@@ -144,13 +143,29 @@ const std::vector<std::string>& scheme_names() {
   return names;
 }
 
+const std::vector<std::string>& vehicle_part_names() {
+  static const std::vector<std::string> names{"zero-velocity", "zero-angular-rate",
+                                              "non-holonomic"};
+  return names;
+}
+
+VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
+  if (vehicle.name == "none") return {};
+  VehicleConfig config = VehicleConfig::car();
+  bool* const parts[] = {&config.zero_velocity, &config.zero_angular_rate, &config.non_holonomic};
+  for (const std::string& part : vehicle.without) {
+    *parts[index_of(vehicle_part_names(), part)] = false;
+  }
+  return config;
+}
+
 NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu) {
   NavigatorConfig config;
   config.filter = options.filter;
   config.alignment = options.alignment;
+  config.timing = options.timing;
+  config.vehicle = vehicle_config(options.vehicle);
   config.filter.imu = imu;
-  if (std::getenv("CAR")) config.vehicle = VehicleConfig::car();
-  if (std::getenv("NOMOUNT")) config.C_bs.reset();
   config.filter.strapdown.scheme = static_cast<Scheme>(index_of(scheme_names(), options.scheme));
   if (options.lever_arm_b_m) config.filter.lever_arm_b_m = *options.lever_arm_b_m;
   Navigator{config};
@@ -166,7 +181,12 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   if (logs.drives.empty()) jobs.push_back(job_of_logs(options));
   for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(options, folder));
   for (FuseJob& job : jobs) {
-    if (!std::getenv("NOMOUNT")) job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
+    const FuseVehicle& vehicle = options.vehicle;
+    job.estimates_mount =
+        vehicle.estimate_mount || (vehicle.name != "none" && !job.mount_rpy_deg);
+    if (!job.estimates_mount) {
+      job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
+    }
     inspect(job);
   }
   return jobs;

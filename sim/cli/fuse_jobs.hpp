@@ -35,12 +35,21 @@ struct FuseOutput {
   bool json{false};
 };
 
+/// Aiding by what is known of the vehicle.
+struct FuseVehicle {
+  std::string name{"none"};
+  std::vector<std::string> without{};
+  bool estimate_mount{false};
+};
+
 struct FuseOptions {
   FuseLogs logs{};
+  FuseVehicle vehicle{};
   FuseOutput output{};
   ImuChoice imu{};
   EkfConfig filter{};  ///< all but the IMU model, the scheme and the lever arm
   AlignmentConfig alignment{};
+  TimingConfig timing{};
   std::string scheme{"two-sample"};
   std::optional<Eigen::Vector3d> lever_arm_b_m{};
 };
@@ -49,6 +58,7 @@ struct FuseOptions {
 struct FuseJob {
   std::string drive{};  ///< name of its folder; empty when the logs were given one by one
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
+  bool estimates_mount{false};
   std::string imu_format{};
   std::string gnss_format{};
   sim::ReplayInput input{};
@@ -58,6 +68,9 @@ struct FuseJob {
 /// The names of RateMeaning and of Scheme, in their order.
 const std::vector<std::string>& rate_meaning_names();
 const std::vector<std::string>& scheme_names();
+
+/// The parts of the vehicle aiding that can be switched off.
+const std::vector<std::string>& vehicle_part_names();
 
 /// @throws Error when the IMU model cannot be read or a number is out of range.
 NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu);

@@ -36,13 +36,27 @@ Json logs_json(const FuseJob& job) {
   return logs;
 }
 
+Json health_json(const sim::ReplayResult& r) {
+  const Health& h = r.health;
+  return {{"state", name(h.state)},
+          {"position_nis_ratio", h.position_nis_ratio},
+          {"velocity_nis_ratio", h.velocity_nis_ratio},
+          {"position_sigma_scale", h.position_sigma_scale},
+          {"velocity_sigma_scale", h.velocity_sigma_scale},
+          {"repairs", h.repairs},
+          {"resets", h.resets},
+          {"realignments", h.realignments},
+          {"mount_rpy_deg", r.mount_rpy_deg ? json_of(r.mount_rpy_deg) : Json()}};
+}
+
 Json solution_json(const FuseJob& job) {
   const sim::ReplayResult& r = job.result;
   if (!r.has_solution) return nullptr;
   return {{"path", path_json(job.input.solution)},
           {"first_s", r.first_solution_s},
           {"last_s", r.last_solution_s},
-          {"final_roll_deg", r.final_roll_deg}};
+          {"final_roll_deg", r.final_roll_deg},
+          {"health", health_json(r)}};
 }
 
 Json verdicts_json(const std::array<std::uint64_t, kVerdicts>& counts) {
@@ -132,7 +146,12 @@ Json input_json(const FuseOptions& o, const std::string& imu_name) {
     for (const auto& folder : o.logs.drives) input["drives"].push_back(folder.string());
   }
   const Eigen::Vector2d scale = o.logs.gnss_sigma_scale.value_or(Eigen::Vector2d::Ones());
-  input.update({{"mount_axes", o.logs.mount_axes},
+  input.update({{"vehicle", o.vehicle.name},
+                {"without", o.vehicle.without},
+                {"estimate_mount", o.vehicle.estimate_mount},
+                {"position_lag_s", o.timing.position_lag_s},
+                {"velocity_lag_s", o.timing.velocity_lag_s},
+                {"mount_axes", o.logs.mount_axes},
                 {"lever_arm_m", json_of(o.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))},
                 {"imu_model", imu_name},
                 {"rate_meaning", o.logs.rate_meaning},

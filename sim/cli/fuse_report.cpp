@@ -99,6 +99,10 @@ void print_run(const FuseJob& job) {
   const FuseTotals totals = totals_of({job});
   fmt::print("  mean NIS of the fused fixes: {} (expected {})\n", number(totals.nis_mean, 2),
              number(totals.nis_dof_mean, 2));
+  if (job.estimates_mount && r.mount_rpy_deg) {
+    fmt::print("  mount found, to forward, right, down: roll {:.1f}, pitch {:.1f}, yaw {:.1f} deg\n",
+               r.mount_rpy_deg->x(), r.mount_rpy_deg->y(), r.mount_rpy_deg->z());
+  }
   if (job.input.truth.empty()) return;
   fmt::print("\nErrors against the reference, RMS over {} epochs\n", r.rms.epochs);
   Table rms({"<", "horizontal, m", "vertical, m", "velocity 3-D, m/s", "attitude 3-D, deg"});
@@ -224,6 +228,16 @@ void warn(const FuseJob& job) {
   if (!job.input.truth.empty()) warn_of_log("truth", job.input.truth, r.truth_report);
   if (const auto n = count(r, Verdict::kGap); n > 0) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);
+  }
+  if (const auto n = count(r, Verdict::kReset); n > 0) {
+    spdlog::warn("{}position and velocity began anew {} times, after fixes that agreed with each "
+                 "other had been refused", where, n);
+  }
+  if (r.health.repairs > 0) {
+    spdlog::warn("{}the covariance had to be repaired {} times", where, r.health.repairs);
+  }
+  if (job.estimates_mount && !r.mount_rpy_deg) {
+    spdlog::warn("{}the mount was not found: that takes 5 s straight on at more than 5 m/s", where);
   }
   if (const auto n = count(r, Verdict::kGated); n > 0) {
     spdlog::warn("{}{} fixes were refused by the gate", where, n);

@@ -53,11 +53,12 @@ class Aligner {
   /// @pre inc.dt_s > 0.
   void push(const ImuIncrement& inc);
 
-  /// The alignment at the time of this fix, as soon as two fixes with velocity in a row allow it.
-  /// @pre is_usable(fix); increments up to fix.time have been pushed.
+  /// The alignment at the time of this fix, as soon as two fixes with velocity in a row allow it. A
+  /// fix that was cut in two for its lags is put together again. @pre is_usable(fix); increments up to fix.time have been pushed.
   std::optional<Alignment> push(const GnssFix& fix);
 
  private:
+  std::optional<Alignment> take(const GnssFix& fix);
   bool watch_rest(const GnssVelocity& velocity);
   Alignment align_by_course(const GnssFix& fix, const GnssVelocity& before) const;
   Alignment level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const;
@@ -72,6 +73,7 @@ class Aligner {
   AlignmentConfig config_;
   EkfConfig filter_;
   std::optional<GnssFix> previous_{};
+  std::optional<GnssFix> half_{};  // waits for its other half
   Sum since_fix_{};
   Sum rest_{};
 };

@@ -55,6 +55,9 @@ class Navigator {
     return aligned() ? time_to_limit(filter(), limit_m, probability) : TimeToLimit{};
   }
 
+  /// Sensor axes to body axes; nothing while the mount is unknown.
+  const std::optional<Eigen::Matrix3d>& C_bs() const { return fusion().C_bs(); }
+
   Health health() const;
 
   /// The newest fix that reached the filter; dof 0 before the first.

@@ -2,15 +2,15 @@
 /// What is known of a vehicle without asking a receiver: that it stands, that it does not slide.
 #pragma once
 
-#include <optional>
-
 #include "leeway/filters/heading_bank.hpp"
 #include "leeway/filters/standstill.hpp"
 #include "leeway/filters/vehicle_state.hpp"
 
 namespace leeway {
 
-/// Each part is off unless switched on; car() is the set for a road vehicle.
+/// Each part is off unless switched on; car() is the set for a road vehicle. Sigmas of constraints
+/// stand for errors that last, fused twice a second as if they were white: they are larger than what
+/// the innovations show (docs/theory/vehicle_aiding.md).
 struct VehicleConfig {
   bool zero_velocity{false};
   bool zero_angular_rate{false};
@@ -19,15 +19,15 @@ struct VehicleConfig {
   bool barometer{false};
 
   StandstillConfig standstill{};
-  double rest_sigma_mps{0.02};          ///< velocity at rest: the body on its springs
-  double rest_turn_sigma_radps{2e-5};   ///< rate at rest, beyond the gyro's white noise
-  double min_speed_mps{2.0};            ///< below it slip is not small beside the speed
-  double right_sigma_mps{0.1};          ///< velocity of the rear axle to the right ...
-  double right_sigma_s{0.03};           ///< ... and more by this times the lateral acceleration
-  double down_sigma_mps{0.2};           ///< velocity of the rear axle downwards: springs, road
-  double rear_axle_x_m{-1.3};           ///< IMU to rear axle along the body's x axis
+  double rest_sigma_mps{0.02};         ///< velocity at rest: the body on its springs
+  double rest_turn_sigma_radps{2e-5};  ///< rate at rest, beyond the gyro's white noise
+  double min_speed_mps{2.0};           ///< below it the constraint says little of the heading
+  double right_sigma_mps{0.1};         ///< velocity of the rear axle to the right ...
+  double right_sigma_m{0.5};           ///< ... and more by this times the rate of turn: slip
+  double down_sigma_mps{0.1};          ///< velocity of the rear axle downwards: springs, road
+  double rear_axle_x_m{-1.3};          ///< IMU to rear axle along the body's x axis
   double rear_axle_sigma_m{0.5};
-  double mount_sigma_rad{0.05};         ///< pitch and yaw of the mount as given
+  double mount_sigma_rad{0.05};        ///< pitch and yaw of the mount
   double mount_walk_rad_per_sqrt_s{2e-5};
   double odometer_scale_sigma{0.03};
   double odometer_walk_per_sqrt_s{1e-5};
@@ -41,6 +41,9 @@ struct VehicleConfig {
   /// Whether a part that is on depends on the vehicle's parameters.
   bool uses_parameters() const { return non_holonomic || odometer || barometer; }
 };
+
+/// @throws Error when a value is out of range.
+void validate(const VehicleConfig& config);
 
 /// The vehicle's parameters as far as the configuration knows them.
 VehicleState vehicle_state(const VehicleConfig& config);
@@ -66,8 +69,6 @@ class VehicleAiding {
   ImuBlocks blocks_{};
   StandstillDetector standstill_;
   bool at_rest_{false};
-  Eigen::Vector3d a_e_{Eigen::Vector3d::Zero()};
-  Eigen::Vector3d v_e_{Eigen::Vector3d::Zero()};
 };
 
 }  // namespace leeway

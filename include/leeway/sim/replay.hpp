@@ -54,6 +54,8 @@ struct ReplayResult {
   std::int64_t fixes{0};    ///< that the filter judged: fused or gated
   double nis_mean{};        ///< over the fused fixes
   double nis_dof_mean{};    ///< what the mean should be
+  Health health{};          ///< at the end
+  std::optional<Eigen::Vector3d> mount_rpy_deg{};  ///< found: Rz(Y) Ry(P) Rx(R), to forward, right, down
   double final_roll_deg{};  ///< attitude at the end: beyond 90 deg the mount is upside down
   LogReport imu_report{};
   LogReport gnss_report{};
