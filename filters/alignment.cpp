@@ -39,6 +39,7 @@ Aligner::Aligner(const AlignmentConfig& config, const EkfConfig& filter)
   require_positive(config.max_fix_interval_s, "max_fix_interval_s");
   require_positive(config.rest_speed_mps, "rest_speed_mps");
   require_positive(config.rest_turn_rad, "rest_turn_rad");
+  require_positive(config.min_level_s, "min_level_s");
   require_positive(config.min_rest_s, "min_rest_s");
 }
 
@@ -75,7 +76,7 @@ std::optional<Alignment> Aligner::take(const GnssFix& fix) {
       // A start needs a place.
     } else if (config_.heading_from_course) {
       if (moving) result = align_by_course(fix, *previous_->velocity);
-    } else if (moving || (at_rest && rest_.dt_s >= config_.min_rest_s)) {
+    } else if (moving || (at_rest && rest_.dt_s >= config_.min_level_s)) {
       result = level_only(fix, *previous_->velocity, at_rest);
     }
   }

@@ -36,6 +36,12 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
 
 }  // namespace
 
+Ekf Fusion::any_filter() const {
+  Estimate somewhere;
+  somewhere.nav.r_e_m.x() = wgs84::kSemiMajorAxisM;
+  return Ekf(filter_of(config_), somewhere, ErrorMatrix::Identity());
+}
+
 Fusion::Fusion(const NavigatorConfig& config)
     : config_(config),
       aligner_(alignment_of(config), filter_of(config)),

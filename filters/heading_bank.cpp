@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -12,12 +11,12 @@
 
 namespace leeway {
 namespace {
-// docs/theory/heading_bank.md says what each was chosen by.
-constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where 12 members do not reach
-const double kMemory = std::getenv("MEM") ? std::atof(std::getenv("MEM")) : 1e9;
-const double kCommonSurprise = std::getenv("DEAD") ? std::atof(std::getenv("DEAD")) : 1.0;
-const double kEvidenceCorrelationS = std::getenv("TAU") ? std::atof(std::getenv("TAU")) : 2.0;
-constexpr double kNegligibleVariance = 0.2;  // the kept one claims at most 9 % less sigma
+// What each was chosen by: docs/theory/heading_bank.md.
+constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where twelve members do not reach
+constexpr double kEvidenceCorrelationS = 2.0;
+constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S that decides nothing
+constexpr double kMemory = 10.0;             // independent measurements
+constexpr double kNegligibleVariance = 0.5;  // relative
 constexpr double kPi = 180.0 * kRadPerDeg;
 
 /// The estimate with the vehicle turned about the antenna.
@@ -40,8 +39,8 @@ ErrorMatrix turned_with_body(ErrorMatrix P, const Eigen::Matrix3d& turn_e) {
 }
 
 /// Whether the heavier one alone would tell of no variance of the two, about its own estimate, more
-/// than a fifth too little. With a probability near one half: it is the same estimate. With a tiny
-/// one: it may be another.
+/// than kNegligibleVariance too little. With a probability near one half: it is the same estimate.
+/// With a tiny one: it may be another.
 /// @param probability  of the lighter of the two
 bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
   const ErrorVector x = difference(lighter.estimate(), heavier.estimate());
@@ -123,7 +122,7 @@ void HeadingBank::weigh(const Reports& reports) {
   }
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     log_weight_[k] *= 1.0 - weight / kMemory;
-    log_weight_[k] -= 0.5 * weight * std::max(surprise[k] - least - kCommonSurprise, 0.0);
+    log_weight_[k] -= 0.5 * weight * std::max(surprise[k] - least - kIgnoredSurprise, 0.0);
   }
   normalize();
   merge();

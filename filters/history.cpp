@@ -49,7 +49,7 @@ void History::restart(const Fusion& fusion, Time now) {
   checkpoints_.push_back({fusion_, now, steps_forgotten_});
   while (!events_.empty() && events_.front().time < now) {
     const Event& event = events_.front();
-    if (!event.done && event.counts) ++ledger_.counts[static_cast<std::size_t>(Verdict::kLate)];
+    if (!event.done && event.counts) ++ledger_[static_cast<std::size_t>(Verdict::kLate)];
     events_.pop_front();
   }
 }
@@ -95,9 +95,9 @@ void History::decide(Event& event) {
       std::visit([this](const auto& measurement) { return fusion_.fuse(measurement); }, event.data);
   if (event.counts) {
     if (event.verdict != Verdict::kAccepted) {
-      --ledger_.counts[static_cast<std::size_t>(event.verdict)];
+      --ledger_[static_cast<std::size_t>(event.verdict)];
     }
-    ++ledger_.counts[static_cast<std::size_t>(verdict)];
+    ++ledger_[static_cast<std::size_t>(verdict)];
   }
   event.verdict = verdict;
   event.done = true;

@@ -95,7 +95,7 @@ void Navigator::start(const Estimate& estimate, const ErrorMatrix& P) {
 
 std::uint64_t Navigator::count(Verdict verdict) const {
   const auto k = static_cast<std::size_t>(verdict);
-  return counts_[k] + history_.ledger().counts[k];
+  return counts_[k] + history_.ledger()[k];
 }
 
 Verdict Navigator::counted(Verdict verdict) {

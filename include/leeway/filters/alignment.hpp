@@ -28,7 +28,8 @@ struct AlignmentConfig {
   double rest_speed_mps{0.2};      ///< below this a fix counts as at rest
   double rest_turn_rad{0.01};      ///< ... if the IMU turned less than this since the fix before,
                                    ///< beyond its turn-on bias
-  double min_rest_s{1.0};          ///< a rest this long gives the gyro bias
+  double min_level_s{1.0};         ///< a rest this long is enough to level
+  double min_rest_s{3.0};          ///< a rest this long gives the gyro bias
 };
 
 /// What an alignment found: a start for the filter.
@@ -57,6 +58,12 @@ class Aligner {
   /// fix that was cut in two for its lags is put together again. @pre is_usable(fix); increments up to fix.time have been pushed.
   std::optional<Alignment> push(const GnssFix& fix);
 
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(previous_, half_, since_fix_, rest_);
+  }
+
  private:
   std::optional<Alignment> take(const GnssFix& fix);
   bool watch_rest(const GnssVelocity& velocity);
@@ -65,6 +72,11 @@ class Aligner {
   void set_rest_bias(Alignment& alignment) const;
 
   struct Sum {
+    template <class Archive>
+    void visit(Archive& archive) {
+      archive(dt_s, dtheta_b_rad, dv_b_mps);
+    }
+
     double dt_s{0.0};
     Eigen::Vector3d dtheta_b_rad{Eigen::Vector3d::Zero()};
     Eigen::Vector3d dv_b_mps{Eigen::Vector3d::Zero()};

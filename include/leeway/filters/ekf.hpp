@@ -135,6 +135,14 @@ class Ekf {
   /// Measured rate (bias not removed) of the newest increment; zero before any data.
   const Eigen::Vector3d& omega_ib_b_radps() const { return omega_ib_b_radps_; }
 
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(estimate_, P_, vehicle_, estimates_vehicle_, Phi_, gravity_gradient_e_, history_,
+            last_position_fix_, omega_ib_b_radps_, mean_omega_ib_b_radps_, mean_rate_window_s_,
+            config_.lever_arm_b_m);
+  }
+
  private:
   void flush();
   double position_weight(Time t) const;

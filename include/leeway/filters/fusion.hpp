@@ -57,6 +57,20 @@ class Fusion {
   std::uint32_t resets() const { return resets_; }
   std::uint32_t realignments() const { return realignments_; }
 
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
+            last_fused_, gated_since_, last_reset_, gated_in_a_row_, repairs_, resets_,
+            realignments_);
+    const Ekf filter = any_filter();
+    bool has_bank = bank_.has_value();
+    archive(has_bank);
+    HeadingBank bank = bank_ ? *bank_ : HeadingBank(filter);
+    bank.visit(archive, filter);
+    bank_ = has_bank ? std::optional(bank) : std::nullopt;
+  }
+
  private:
   void align(const GnssFix& fix);
   void begin(const HeadingBank& bank);
@@ -67,6 +81,7 @@ class Fusion {
   Verdict locked_out(const GnssFix& fix);
   void realign();
   void guard_numbers();
+  Ekf any_filter() const;
 
   NavigatorConfig config_;
   Aligner aligner_;

@@ -77,6 +77,20 @@ class HeadingBank {
   /// covariance and the square of its distance. Its attitude errors may reach pi.
   ErrorMatrix covariance() const;
 
+  /// Names every member that changes, for a snapshot. @param filter  any, of this configuration
+  template <class Archive>
+  void visit(Archive& archive, const Ekf& filter) {
+    for (std::optional<Ekf>& member : members_) {
+      bool is_there = member.has_value();
+      archive(is_there);
+      Ekf content = member.value_or(filter);
+      archive(content);
+      if (is_there) member = content;
+      if (!is_there) member.reset();
+    }
+    archive(log_weight_, count_, best_, last_evidence_);
+  }
+
  private:
   using Reports = std::array<UpdateReport, kMaxFilters>;
 

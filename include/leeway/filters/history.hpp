@@ -3,6 +3,7 @@
 /// acts at its own time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <variant>
@@ -55,11 +56,27 @@ class History {
   const Fusion& fusion() const { return fusion_; }
   const std::optional<Time>& now() const { return now_; }
 
-  /// Called for every event that gets its verdict, and with the one it had when it gets another.
-  struct Ledger {
-    std::uint64_t counts[kVerdicts]{};
-  };
+  /// Verdicts on events, by kind. An event that is judged again counts once, with its last verdict.
+  using Ledger = std::array<std::uint64_t, kVerdicts>;
   const Ledger& ledger() const { return ledger_; }
+
+  /// Names what a snapshot needs: the oldest point in time to come back to, and all that came in
+  /// since. When read it is run again, which leads to the same bits.
+  template <class Archive>
+  void visit(Archive& archive) {
+    bool has_begun = now_.has_value();
+    Checkpoint oldest = has_begun ? checkpoints_.front() : Checkpoint{fusion_};
+    archive(has_begun, oldest.fusion, oldest.time, oldest.next_step, steps_forgotten_, ledger_,
+            steps_, events_);
+    if constexpr (Archive::kReads) {
+      fusion_ = oldest.fusion;
+      now_.reset();
+      checkpoints_.clear();
+      if (!has_begun) return;
+      checkpoints_.push_back(oldest);
+      rewind(0);
+    }
+  }
 
  private:
   struct Checkpoint {

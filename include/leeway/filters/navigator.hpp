@@ -3,13 +3,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "leeway/filters/health.hpp"
 #include "leeway/filters/history.hpp"
 #include "leeway/filters/imu_clock.hpp"
 #include "leeway/filters/navigator_config.hpp"
+#include "leeway/filters/snapshot.hpp"
 #include "leeway/filters/time_to_limit.hpp"
 #include "leeway/filters/verdict.hpp"
 #include "leeway/gnss_fix.hpp"
@@ -65,7 +68,23 @@ class Navigator {
 
   std::uint64_t count(Verdict verdict) const;
 
+  /// How many bytes a snapshot has; the same at any time for a configuration.
+  std::size_t snapshot_size() const;
+
+  /// Writes the state. Continued from it, the same inputs give the same bits. Unlike push this
+  /// allocates, and takes a millisecond.
+  /// @pre out.size() == snapshot_size().
+  void snapshot(std::span<std::byte> out) const;
+
+  /// Takes the state of a navigator of the same configuration, on the same kind of machine.
+  Restore restore(std::span<const std::byte> bytes);
+
  private:
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(history_, clock_, sample_, counts_);
+  }
+
   const Fusion& fusion() const { return history_.fusion(); }
   Verdict counted(Verdict verdict);
   Verdict take(const ImuIncrement& inc);

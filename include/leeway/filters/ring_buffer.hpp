@@ -44,6 +44,15 @@ class RingBuffer {
   void pop_back() { --size_; }
   void clear() { size_ = 0; }
 
+  /// Every element there is room for, so that the size in a snapshot does not change.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(size_);
+    if constexpr (Archive::kReads) first_ = 0;
+    T filler{};
+    for (std::size_t k = 0; k < capacity(); ++k) archive(k < size_ ? (*this)[k] : filler);
+  }
+
  private:
   std::vector<T> data_;
   std::size_t first_{0};

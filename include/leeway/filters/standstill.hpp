@@ -38,6 +38,12 @@ class ImuBlocks {
   /// @returns the block that this increment completes. @pre inc.dt_s > 0.
   std::optional<ImuBlock> push(const ImuIncrement& inc);
 
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(dt_s_, count_, omega_sum_, omega_square_sum_, f_sum_, f_square_sum_);
+  }
+
  private:
   double dt_s_{0.0};
   int count_{0};
@@ -55,6 +61,12 @@ class StandstillDetector {
   /// @param filter  at the end of the block
   /// @returns whether the vehicle has stood still over this block and the one before.
   bool push(const ImuBlock& block, const Ekf& filter);
+
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(was_still_);
+  }
 
  private:
   bool looks_still(const ImuBlock& block, const Ekf& filter) const;

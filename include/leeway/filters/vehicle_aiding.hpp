@@ -60,6 +60,12 @@ class VehicleAiding {
 
   bool at_rest() const { return at_rest_; }
 
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(blocks_, standstill_, at_rest_);
+  }
+
  private:
   void rest(const ImuBlock& block, HeadingBank& bank) const;
   void roll(const ImuBlock& block, HeadingBank& bank) const;
