@@ -1,0 +1,171 @@
+#include "leeway/filters/heading_bank.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <cstdlib>
+
+#include "leeway/error.hpp"
+#include "leeway/filters/gnss_measurement.hpp"
+#include "leeway/rotation.hpp"
+
+namespace leeway {
+namespace {
+double env(const char* n, double d) { const char* s = getenv(n); return s ? atof(s) : d; }
+const double kSpacingRad = env("SPACING", 18.0) * kRadPerDeg;
+const double kShare = env("SHARE", 0.5);
+const double kEvidenceCorrelationS = env("TAU", 1.0);
+const double kLogPrune = env("PRUNE", -100.0);
+const double kMergeSigmasSq = env("MERGE", 0.05);
+constexpr double kPi = 180.0 * kRadPerDeg;
+
+/// The estimate with the vehicle turned about the antenna.
+Estimate turned_about_antenna(const Estimate& estimate, const Eigen::Vector3d& turn_e_rad,
+                              const Eigen::Vector3d& lever_arm_b_m) {
+  Estimate result = estimate;
+  result.nav.q_eb = (exp_quaternion(turn_e_rad) * estimate.nav.q_eb).normalized();
+  result.nav.r_e_m += antenna_position_e(estimate, lever_arm_b_m) - antenna_position_e(result, lever_arm_b_m);
+  return result;
+}
+
+/// The covariance of attitude errors that are known in body axes, after the body has turned.
+ErrorMatrix turned_with_body(ErrorMatrix P, const Eigen::Matrix3d& turn_e) {
+  P.middleRows<3>(kPsi) = (turn_e * P.middleRows<3>(kPsi)).eval();
+  P.middleCols<3>(kPsi) = (P.middleCols<3>(kPsi) * turn_e.transpose()).eval();
+  P.block<3, 3>(kPsi, kPsi) =
+      (0.5 * (P.block<3, 3>(kPsi, kPsi) + P.block<3, 3>(kPsi, kPsi).transpose())).eval();
+  return P;
+}
+
+bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
+  const ErrorVector x = difference(lighter.estimate(), heavier.estimate());
+  const ErrorVector variance = heavier.covariance().diagonal();
+  const ErrorVector added = x.cwiseAbs2() + lighter.covariance().diagonal() - variance;
+  return (probability * added.array() <= kMergeSigmasSq * variance.array()).all();
+}
+
+}  // namespace
+
+HeadingBank::HeadingBank(const Ekf& filter) : count_(1) { members_[0].emplace(filter); }
+
+HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
+                         const Eigen::Vector3d& axis_e, double sigma_rad) {
+  if (!(std::abs(axis_e.norm() - 1.0) < 1e-9)) {
+    throw Error("heading bank: axis_e has norm " + std::to_string(axis_e.norm()) +
+                ", must be 1 within 1e-9");
+  }
+  if (!(sigma_rad >= 0.0)) {
+    throw Error("heading bank: sigma_rad is " + std::to_string(sigma_rad) + ", must be >= 0");
+  }
+  double member_sigma_rad = sigma_rad;
+  double spacing_rad = 0.0;
+  count_ = 1;
+  if (sigma_rad > kOneFilterRad) {
+    const double range_rad = std::min(6.0 * sigma_rad, 2.0 * kPi);
+    count_ = static_cast<std::size_t>(
+        std::min(std::ceil(range_rad / kSpacingRad), static_cast<double>(kMaxFilters)));
+    spacing_rad = range_rad / static_cast<double>(count_);
+    member_sigma_rad = kShare * spacing_rad;
+  }
+  const bool known = sigma_rad < kWholeCircleRad && count_ > 1;
+  const double means_variance_rad2 = sigma_rad * sigma_rad - member_sigma_rad * member_sigma_rad;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const double turn_rad =
+        (static_cast<double>(k) - 0.5 * static_cast<double>(count_ - 1)) * spacing_rad;
+    const Eigen::Vector3d turn_e_rad = turn_rad * axis_e;
+    ErrorMatrix P_member = turned_with_body(P, exp_rotation(turn_e_rad));
+    P_member.block<3, 3>(kPsi, kPsi) +=
+        member_sigma_rad * member_sigma_rad * axis_e * axis_e.transpose();
+    members_[k].emplace(config, turned_about_antenna(estimate, turn_e_rad, config.lever_arm_b_m), P_member);
+    log_weight_[k] = known ? -0.5 * turn_rad * turn_rad / means_variance_rad2 : 0.0;
+  }
+  normalize();
+}
+
+double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
+
+double HeadingBank::evidence_weight(const UpdateReport& report) {
+  std::optional<Time>& last =
+      last_evidence_[static_cast<std::size_t>(std::clamp(report.dof, 0, 6))];
+  const double root = last ? gnss_position_weight(to_seconds(report.time - *last), kEvidenceCorrelationS) : 1.0;
+  last = report.time;
+  return root * root;
+}
+
+void HeadingBank::weigh(const Reports& reports) {
+  bool any = false;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    any = any || (members_[k] && reports[k].outcome == UpdateReport::Outcome::kFused);
+  }
+  if (!any) return;
+  const double weight = evidence_weight(reports[best_]);
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k]) continue;
+    if (reports[k].outcome == UpdateReport::Outcome::kUnusable) { log_weight_[k] = -1e300; continue; }
+    log_weight_[k] -= 0.5 * weight * (std::min(reports[k].nis, reports[k].gate) + reports[k].log_det_S);
+  }
+  normalize();
+  prune();
+  merge();
+}
+
+void HeadingBank::normalize() {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k] || !(log_weight_[k] > largest)) continue;
+    largest = log_weight_[k];
+    best_ = k;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (members_[k]) sum += std::exp(log_weight_[k] - largest);
+  }
+  const double log_sum = largest + std::log(sum);
+  for (std::size_t k = 0; k < kMaxFilters; ++k) log_weight_[k] -= log_sum;
+}
+
+void HeadingBank::prune() {
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (members_[k] && log_weight_[k] < log_weight_[best_] + kLogPrune) drop(k);
+  }
+  normalize();
+}
+
+void HeadingBank::merge() {
+  for (std::size_t i = 0; i < kMaxFilters; ++i) {
+    for (std::size_t j = i + 1; j < kMaxFilters; ++j) {
+      if (!members_[i] || !members_[j]) continue;
+      const bool i_heavier = log_weight_[i] >= log_weight_[j];
+      const std::size_t heavy = i_heavier ? i : j;
+      const std::size_t light = i_heavier ? j : i;
+      const double ratio = std::exp(log_weight_[light] - log_weight_[heavy]);
+      if (!is_negligible(*members_[light], *members_[heavy], ratio / (1.0 + ratio))) continue;
+      log_weight_[heavy] += std::log1p(ratio);
+      drop(light);
+    }
+  }
+  normalize();
+}
+
+void HeadingBank::drop(std::size_t k) {
+  members_[k].reset();
+  --count_;
+}
+
+ErrorMatrix HeadingBank::covariance() const {
+  ErrorMatrix P = ErrorMatrix::Zero();
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k]) continue;
+    ErrorMatrix second_moment = members_[k]->covariance();
+    if (k != best_) {
+      const ErrorVector x = difference(members_[k]->estimate(), best().estimate());
+      second_moment += x * x.transpose();
+    }
+    P += std::exp(log_weight_[k]) * second_moment;
+  }
+  return P;
+}
+
+}  // namespace leeway
