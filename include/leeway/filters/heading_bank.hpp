@@ -10,6 +10,7 @@
 
 #include "leeway/filters/ekf.hpp"
 #include "leeway/filters/error_state.hpp"
+#include "leeway/rotation.hpp"
 #include "leeway/time.hpp"
 
 namespace leeway {
@@ -49,7 +50,8 @@ class HeadingBank {
 
   /// Runs f on every member, weights the members by the likelihood of what f reports, drops those
   /// that it refutes and those that agree with a heavier one.
-  /// @param f  UpdateReport(Ekf&): a fix, or a pseudo measurement. It fills nis, gate and log_det_S.
+  /// @param f  UpdateReport(Ekf&): a fix, or a pseudo measurement. It fills nis, gate and
+  /// log_det_S.
   /// @returns the report of best().
   template <class F>
   UpdateReport update(F&& f) {
@@ -81,7 +83,6 @@ class HeadingBank {
   void weigh(const Reports& reports);
   double evidence_weight(const UpdateReport& report);
   void normalize();
-  void prune();
   void merge();
   void drop(std::size_t k);
 
