@@ -11,10 +11,12 @@
 
 namespace leeway {
 namespace {
-// docs/theory/heading_bank.md says what each was chosen by.
-constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where 12 members do not reach
+// What each was chosen by: docs/theory/heading_bank.md.
+constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where twelve members do not reach
 constexpr double kEvidenceCorrelationS = 2.0;
-constexpr double kNegligibleVariance = 0.2;  // the kept one claims at most 9 % less sigma
+constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S that decides nothing
+constexpr double kMemory = 10.0;             // independent measurements
+constexpr double kNegligibleVariance = 0.5;  // relative
 constexpr double kPi = 180.0 * kRadPerDeg;
 
 /// The estimate with the vehicle turned about the antenna.
@@ -37,8 +39,8 @@ ErrorMatrix turned_with_body(ErrorMatrix P, const Eigen::Matrix3d& turn_e) {
 }
 
 /// Whether the heavier one alone would tell of no variance of the two, about its own estimate, more
-/// than a fifth too little. With a probability near one half: it is the same estimate. With a tiny
-/// one: it may be another.
+/// than kNegligibleVariance too little. With a probability near one half: it is the same estimate.
+/// With a tiny one: it may be another.
 /// @param probability  of the lighter of the two
 bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
   const ErrorVector x = difference(lighter.estimate(), heavier.estimate());
@@ -106,15 +108,21 @@ void HeadingBank::weigh(const Reports& reports) {
   };
   if (std::none_of(reports.begin(), reports.end(), fused)) return;
   const double weight = evidence_weight(*std::find_if(reports.begin(), reports.end(), fused));
+  std::array<double, kMaxFilters> surprise{};
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     if (!members_[k]) continue;
     const UpdateReport& r = reports[k];
-    const double surprise = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
-    if (r.outcome == UpdateReport::Outcome::kUnusable || !std::isfinite(surprise)) {
+    surprise[k] = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
+    if (r.outcome == UpdateReport::Outcome::kUnusable || !std::isfinite(surprise[k])) {
       drop(k);
     } else {
-      log_weight_[k] -= 0.5 * weight * surprise;
+      least = std::min(least, surprise[k]);
     }
+  }
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    log_weight_[k] *= 1.0 - weight / kMemory;
+    log_weight_[k] -= 0.5 * weight * std::max(surprise[k] - least - kIgnoredSurprise, 0.0);
   }
   normalize();
   merge();
