@@ -176,8 +176,7 @@ Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bo
   // The turn about the axis is told apart from the rest.
   const Eigen::Matrix3d across =
       Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose();
-  result.P.block<3, 3>(kPsi, kPsi) =
-      across * result.P.block<3, 3>(kPsi, kPsi) * across.transpose();
+  result.P.block<3, 3>(kPsi, kPsi) = across * result.P.block<3, 3>(kPsi, kPsi) * across.transpose();
   set_rest_bias(result);
   return result;
 }

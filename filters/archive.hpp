@@ -30,6 +30,16 @@ class Archive {
   template <class T>
   static constexpr bool kIsPlain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
+  /// Eigen leaves a matrix unset that T{} would zero.
+  template <class T>
+  static T blank() {
+    if constexpr (requires { T::Zero(); }) {
+      return T::Zero();
+    } else {
+      return T{};
+    }
+  }
+
   Derived& self() { return static_cast<Derived&>(*this); }
 
   template <class T>
@@ -65,7 +75,8 @@ class Archive {
   void visit(std::optional<T>& value) {
     bool there = value.has_value();
     visit(there);
-    T content = value.value_or(T{});
+    T content = blank<T>();
+    if (value) content = *value;
     visit(content);
     if (there) value = content;
     if (!there) value.reset();

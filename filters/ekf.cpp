@@ -149,8 +149,8 @@ UpdateReport Ekf::judge(const Measurement& m) {
   if (!report.covariance_positive) return report;
   report.nis = m.innovation.dot(S_llt.solve(m.innovation));
   report.log_det_S = 2.0 * S_llt.matrixLLT().diagonal().array().log().sum();
-  report.outcome = report.nis <= report.gate ? UpdateReport::Outcome::kFused
-                                             : UpdateReport::Outcome::kGated;
+  report.outcome =
+      report.nis <= report.gate ? UpdateReport::Outcome::kFused : UpdateReport::Outcome::kGated;
   return report;
 }
 

@@ -8,10 +8,10 @@
 namespace leeway {
 namespace {
 
-constexpr std::uint32_t kWidenFrom = 3;    // fixes refused in a row: chance alone does not do it
+constexpr std::uint32_t kWidenFrom = 3;  // fixes refused in a row: chance alone does not do it
 constexpr std::uint32_t kRestartFrom = 10;
-constexpr double kWidening = 2.0;          // of P, at each of them
-constexpr double kRelapseS = 60.0;         // locked out again this soon: the attitude is wrong too
+constexpr double kWidening = 2.0;   // of P, at each of them
+constexpr double kRelapseS = 60.0;  // locked out again this soon: the attitude is wrong too
 
 AlignmentConfig alignment_of(const NavigatorConfig& config) {
   AlignmentConfig alignment = config.alignment;
@@ -138,8 +138,7 @@ void Fusion::follow_drift() {
   constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
   constexpr double kShare = 0.1;       // of the squared distance, at each fix
   if (position_noise_.nis_ratio() < kDriftRatio) return;
-  bank_->best().widen_position(kShare / 3.0 *
-                               last_update_.position_innovation_e_m.squaredNorm());
+  bank_->best().widen_position(kShare / 3.0 * last_update_.position_innovation_e_m.squaredNorm());
 }
 
 Verdict Fusion::locked_out(const GnssFix& fix) {
@@ -192,8 +191,7 @@ void Fusion::find_mount() {
   mount_.push(*bank_);
   const auto C_bs = mount_.C_bs();
   if (!C_bs) return;
-  bank_->for_each(
-      [&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
+  bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
   begin_vehicle();
 }
@@ -212,8 +210,8 @@ Verdict Fusion::fuse(const BarometricHeight& barometer) {
   if (!config_.vehicle.barometer) return Verdict::kUnused;
   if (!bank_ || !C_bs_) return Verdict::kAligning;
   const UpdateReport report = bank_->update([&](Ekf& filter) {
-    return filter.update(barometric_height(barometer.height_m, barometer.sigma_m,
-                                           filter.estimate(), filter.vehicle().value));
+    return filter.update(barometric_height(barometer.height_m, barometer.sigma_m, filter.estimate(),
+                                           filter.vehicle().value));
   });
   return report.outcome == UpdateReport::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }

@@ -46,9 +46,9 @@ void require(bool holds, const char* field, double value, const char* range) {
 
 std::string_view name(Verdict verdict) {
   constexpr std::array<std::string_view, kVerdicts> kNames{
-      "accepted",  "aligning",     "fused",  "gated",      "reset",
-      "gap",       "late",         "duplicate", "out_of_order", "future",
-      "clock_jump", "unused",      "not_finite", "implausible", "overflow"};
+      "accepted",   "aligning", "fused",      "gated",        "reset",
+      "gap",        "late",     "duplicate",  "out_of_order", "future",
+      "clock_jump", "unused",   "not_finite", "implausible",  "overflow"};
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
@@ -66,8 +66,8 @@ void validate(const NavigatorConfig& config) {
           "within 10 s");
   require(timing.max_lateness_s >= 0.0 && timing.max_lateness_s <= 60.0, "max_lateness_s",
           timing.max_lateness_s, "0 to 60 s");
-  require(timing.max_ahead_s >= 0.0 && timing.max_ahead_s <= 1e4, "max_ahead_s",
-          timing.max_ahead_s, "0 to 1e4 s");
+  require(timing.max_ahead_s >= 0.0 && timing.max_ahead_s <= 1e4, "max_ahead_s", timing.max_ahead_s,
+          "0 to 1e4 s");
   require(timing.max_imu_rate_hz >= 1.0 && timing.max_imu_rate_hz <= 1e4, "max_imu_rate_hz",
           timing.max_imu_rate_hz, "1 to 1e4 Hz");
   if (config.C_bs && !((*config.C_bs * config.C_bs->transpose() - Eigen::Matrix3d::Identity())
@@ -115,8 +115,7 @@ Verdict Navigator::push(const ImuSample& sample) {
   }
   const std::optional<ImuSample> before = sample_;
   if (before && sample.time > before->time) {
-    const Verdict verdict =
-        counted(take(increment_between(*before, sample, config_.rate_meaning)));
+    const Verdict verdict = counted(take(increment_between(*before, sample, config_.rate_meaning)));
     const bool doubted = verdict == Verdict::kFuture || verdict == Verdict::kOutOfOrder;
     if (!doubted) sample_ = sample;
     return verdict;
@@ -201,9 +200,7 @@ Verdict Navigator::push(const BarometricHeight& barometer) {
 
 Verdict Navigator::place(const Event& event) {
   const std::optional<Time>& now = clock_.newest();
-  const auto refused = [&](Verdict verdict) {
-    return event.counts ? counted(verdict) : verdict;
-  };
+  const auto refused = [&](Verdict verdict) { return event.counts ? counted(verdict) : verdict; };
   if (now && to_seconds(event.time - *now) > config_.timing.max_ahead_s) {
     return refused(Verdict::kFuture);
   }
@@ -244,11 +241,11 @@ Health Navigator::health() const {
   const double ratio = std::max(health.position_nis_ratio, health.velocity_nis_ratio);
   health.optimistic_by = std::sqrt(std::max(1.0, ratio));
   using State = Health::State;
-  health.state = f.gated_since()                    ? State::kGating
-                 : health.coasting_s > kCoastingS   ? State::kCoasting
-                 : !f.bank().collapsed()            ? State::kHeadingOpen
-                 : ratio > kInconsistentRatio       ? State::kInconsistent
-                                                    : State::kAligned;
+  health.state = f.gated_since()                  ? State::kGating
+                 : health.coasting_s > kCoastingS ? State::kCoasting
+                 : !f.bank().collapsed()          ? State::kHeadingOpen
+                 : ratio > kInconsistentRatio     ? State::kInconsistent
+                                                  : State::kAligned;
   return health;
 }
 

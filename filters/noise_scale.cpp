@@ -8,8 +8,8 @@ namespace leeway {
 namespace {
 
 constexpr double kWindow = 30.0;
-constexpr double kLargestRatio = 4.0;      // of one fix: a single outlier is the gate's business
-constexpr double kBandLow = 0.5;           // 90 degrees of freedom stay within with 99.99 %
+constexpr double kLargestRatio = 4.0;  // of one fix: a single outlier is the gate's business
+constexpr double kBandLow = 0.5;       // 90 degrees of freedom stay within with 99.99 %
 constexpr double kBandHigh = 1.6;
 constexpr double kLargestScale = 10.0;
 constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's own error changes too

@@ -69,7 +69,7 @@ std::uint32_t fingerprint(NavigatorConfig c) {
   archive(v.zero_velocity, v.zero_angular_rate, v.non_holonomic, v.odometer, v.barometer,
           v.standstill.gyro_std_radps, v.standstill.force_std_mps2, v.standstill.turn_radps,
           v.standstill.speed_mps, v.rest_sigma_mps, v.rest_turn_sigma_radps, v.min_speed_mps,
-          v.right_sigma_mps, v.right_sigma_m, v.down_sigma_mps, v.rear_axle_x_m,
+          v.right_sigma_mps, v.right_sigma_m, v.down_sigma_m2ps2, v.rear_axle_x_m,
           v.rear_axle_sigma_m, v.mount_sigma_rad, v.mount_walk_rad_per_sqrt_s,
           v.odometer_scale_sigma, v.odometer_walk_per_sqrt_s, v.height_offset_sigma_m,
           v.height_walk_m_per_sqrt_s);
@@ -82,9 +82,9 @@ std::uint32_t fingerprint(NavigatorConfig c) {
 }  // namespace
 
 std::string_view name(Restore outcome) {
-  constexpr std::array<std::string_view, 6> kNames{
-      "restored",   "not a snapshot", "other version", "other configuration",
-      "wrong size", "damaged"};
+  constexpr std::array<std::string_view, 6> kNames{"restored",      "not a snapshot",
+                                                   "other version", "other configuration",
+                                                   "wrong size",    "damaged"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

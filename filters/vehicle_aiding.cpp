@@ -45,7 +45,7 @@ void validate(const VehicleConfig& config) {
   require_sigma("min_speed_mps", config.min_speed_mps);
   require_sigma("right_sigma_mps", config.right_sigma_mps);
   require_not_negative("right_sigma_m", config.right_sigma_m);
-  require_sigma("down_sigma_mps", config.down_sigma_mps);
+  require_sigma("down_sigma_m2ps2", config.down_sigma_m2ps2);
   require(std::abs(config.rear_axle_x_m) <= 100.0, "rear_axle_x_m", config.rear_axle_x_m,
           "within 100 m");
   require_not_negative("rear_axle_sigma_m", config.rear_axle_sigma_m);
@@ -103,7 +103,8 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
 
 void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
   if (!config_.non_holonomic || !bank.best().estimates_vehicle()) return;
-  if (bank.best().estimate().nav.v_e_mps.norm() < config_.min_speed_mps) return;
+  const double speed_mps = bank.best().estimate().nav.v_e_mps.norm();
+  if (speed_mps < config_.min_speed_mps) return;
   const double turn_radps =
       (block.mean_omega_ib_b_radps - bank.best().estimate().bias.b_g_radps).norm();
   double right_mps = std::hypot(config_.right_sigma_mps, config_.right_sigma_m * turn_radps);
@@ -113,7 +114,7 @@ void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
   bank.update([&](Ekf& filter) {
     return filter.update(non_holonomic(filter.estimate(), filter.vehicle().value,
                                        filter.omega_ib_b_radps(), right_mps,
-                                       config_.down_sigma_mps));
+                                       config_.down_sigma_m2ps2 / speed_mps));
   });
 }
 

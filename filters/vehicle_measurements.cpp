@@ -84,8 +84,7 @@ Measurement zero_angular_rate(const Estimate& estimate,
                               const Eigen::Vector3d& mean_omega_ib_b_radps, double sigma_radps) {
   const Eigen::Matrix3d C_be = estimate.nav.q_eb.toRotationMatrix().transpose();
   Measurement m(3);
-  m.innovation =
-      mean_omega_ib_b_radps - estimate.bias.b_g_radps - C_be * earth_rotation_e_radps();
+  m.innovation = mean_omega_ib_b_radps - estimate.bias.b_g_radps - C_be * earth_rotation_e_radps();
   m.H.middleCols<3>(kPsi) = C_be * skew(earth_rotation_e_radps());
   m.H.middleCols<3>(kBg).setIdentity();
   m.R.diagonal().setConstant(sigma_radps * sigma_radps);

@@ -118,10 +118,10 @@ ImuErrorModel automotive_mems_model() {
   ImuErrorModel model;
   model.accelerometer.bias_sigma = 0.3;
   model.accelerometer.noise_density = 0.1 * units::kMpsPerSqrtH.si;
-  model.accelerometer.in_run = {0.03, 300.0};
+  model.accelerometer.in_run = {0.005, 300.0};
   model.gyro.bias_sigma = 0.5 * units::kDegPerS.si;
   model.gyro.noise_density = 0.3 * units::kDegPerSqrtH.si;
-  model.gyro.in_run = {0.02 * units::kDegPerS.si, 300.0};
+  model.gyro.in_run = {0.01 * units::kDegPerS.si, 300.0};
   return model;
 }
 

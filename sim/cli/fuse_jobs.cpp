@@ -182,8 +182,7 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(options, folder));
   for (FuseJob& job : jobs) {
     const FuseVehicle& vehicle = options.vehicle;
-    job.estimates_mount =
-        vehicle.estimate_mount || (vehicle.name != "none" && !job.mount_rpy_deg);
+    job.estimates_mount = vehicle.estimate_mount || (vehicle.name != "none" && !job.mount_rpy_deg);
     if (!job.estimates_mount) {
       job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
     }

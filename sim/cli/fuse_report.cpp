@@ -100,8 +100,9 @@ void print_run(const FuseJob& job) {
   fmt::print("  mean NIS of the fused fixes: {} (expected {})\n", number(totals.nis_mean, 2),
              number(totals.nis_dof_mean, 2));
   if (job.estimates_mount && r.mount_rpy_deg) {
-    fmt::print("  mount found, to forward, right, down: roll {:.1f}, pitch {:.1f}, yaw {:.1f} deg\n",
-               r.mount_rpy_deg->x(), r.mount_rpy_deg->y(), r.mount_rpy_deg->z());
+    fmt::print(
+        "  mount found, to forward, right, down: roll {:.1f}, pitch {:.1f}, yaw {:.1f} deg\n",
+        r.mount_rpy_deg->x(), r.mount_rpy_deg->y(), r.mount_rpy_deg->z());
   }
   if (job.input.truth.empty()) return;
   fmt::print("\nErrors against the reference, RMS over {} epochs\n", r.rms.epochs);
@@ -230,8 +231,10 @@ void warn(const FuseJob& job) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);
   }
   if (const auto n = count(r, Verdict::kReset); n > 0) {
-    spdlog::warn("{}position and velocity began anew {} times, after fixes that agreed with each "
-                 "other had been refused", where, n);
+    spdlog::warn(
+        "{}position and velocity began anew {} times, after fixes that agreed with each "
+        "other had been refused",
+        where, n);
   }
   if (r.health.repairs > 0) {
     spdlog::warn("{}the covariance had to be repaired {} times", where, r.health.repairs);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "filters/recording.hpp"
+#include "leeway/filters/heading_bank.hpp"
 #include "leeway/filters/horizontal.hpp"
 #include "leeway/filters/navigator.hpp"
 #include "leeway/filters/time_to_limit.hpp"
@@ -86,6 +87,24 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
     sum_s += horizontal_radius_m(Eigen::Matrix2d::Identity(), 0.95);
     CHECK(guard.count() == 0);
     CHECK(sum_s > 0.0);
+  }
+  SUBCASE("heading bank: predict, update, merge, covariance, copy") {
+    const Eigen::Vector3d down_e = ned_to_ecef(sim::kDefaultOrigin).col(2);
+    HeadingBank bank(config, start, P, down_e, HeadingBank::kWholeCircleRad);
+    const NoMalloc guard;
+    std::size_t next = 0;
+    double sum_rad2 = 0.0;
+    for (const ImuIncrement& inc : log.imu) {
+      bank.for_each([&](Ekf& filter) { filter.predict(inc); });
+      if (next == log.fixes.size() || log.fixes[next].time != inc.time) continue;
+      const GnssFix& fix = log.fixes[next++];
+      bank.update([&](Ekf& filter) { return filter.update(fix); });
+      sum_rad2 += bank.covariance()(kPsi, kPsi);
+    }
+    const HeadingBank copy = bank;
+    CHECK(guard.count() == 0);
+    CHECK(copy.count() < HeadingBank::kMaxFilters);
+    CHECK(sum_rad2 > 0.0);
   }
   SUBCASE("push: alignment, fixes between samples, bad data, a gap") {
     Navigator navigator{NavigatorConfig{}};

@@ -44,8 +44,8 @@ struct Alignment {
 
 /// Collects IMU data and fixes until the attitude can be told. With heading from course that is
 /// when the vehicle moves fast enough; a long wait at a standstill is normal, and yields the gyro
-/// bias. Without, it is levelled after a rest, or on the move by two fixes in a row, and its heading
-/// is left open. No heap, no exceptions after construction.
+/// bias. Without, it is levelled after a rest, or on the move by two fixes in a row, and its
+/// heading is left open. No heap, no exceptions after construction.
 class Aligner {
  public:
   /// @throws Error when the configuration is invalid.
@@ -55,7 +55,8 @@ class Aligner {
   void push(const ImuIncrement& inc);
 
   /// The alignment at the time of this fix, as soon as two fixes with velocity in a row allow it. A
-  /// fix that was cut in two for its lags is put together again. @pre is_usable(fix); increments up to fix.time have been pushed.
+  /// fix that was cut in two for its lags is put together again. @pre is_usable(fix); increments up
+  /// to fix.time have been pushed.
   std::optional<Alignment> push(const GnssFix& fix);
 
   /// Names every member that changes, for a snapshot.

@@ -50,10 +50,10 @@ struct UpdateReport {
   enum class Outcome { kFused, kGated, kUnusable };
   Outcome outcome{Outcome::kUnusable};
   Time time{};
-  int dof{0};                      ///< components of the fix
-  double nis{0.0};                 ///< normalized innovation squared of the whole fix, by its own R
-  double gate{0.0};                ///< the NIS above which it is refused
-  double position_nis{0.0};        ///< of a fix's position alone, 3 components; else 0
+  int dof{0};                ///< components of the fix
+  double nis{0.0};           ///< normalized innovation squared of the whole fix, by its own R
+  double gate{0.0};          ///< the NIS above which it is refused
+  double position_nis{0.0};  ///< of a fix's position alone, 3 components; else 0
   double velocity_nis{0.0};
   Eigen::Vector3d position_innovation_e_m{Eigen::Vector3d::Zero()};
   Eigen::Vector3d velocity_innovation_e_mps{Eigen::Vector3d::Zero()};
@@ -104,7 +104,8 @@ class Ekf {
   bool estimates_vehicle() const { return estimates_vehicle_; }
   const VehicleState& vehicle() const { return vehicle_; }
 
-  /// Renames the body axes: what was v_b is C_new_old * v_b. The vehicle's parameters are forgotten.
+  /// Renames the body axes: what was v_b is C_new_old * v_b. The vehicle's parameters are
+  /// forgotten.
   /// @param lever_arm_b_m  IMU to antenna in the new axes
   void turn_body_axes(const Eigen::Matrix3d& C_new_old, const Eigen::Vector3d& lever_arm_b_m);
 

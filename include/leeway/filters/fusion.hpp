@@ -87,7 +87,7 @@ class Fusion {
   Aligner aligner_;
   VehicleAiding aiding_;
   MountEstimator mount_{};
-  NoiseScale position_noise_{1.0};   // its errors are those of the fix before
+  NoiseScale position_noise_{1.0};  // its errors are those of the fix before
   NoiseScale velocity_noise_{0.5};
   std::optional<Eigen::Matrix3d> C_bs_;
   std::optional<HeadingBank> bank_{};

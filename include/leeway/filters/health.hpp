@@ -27,10 +27,10 @@ struct Health {
   double position_sigma_scale{1.0};  ///< what the receiver's deviations are multiplied by
   double velocity_sigma_scale{1.0};
   bool mount_known{true};
-  bool at_rest{false};             ///< by the detector of the vehicle aiding
-  std::uint32_t repairs{0};        ///< of a covariance that was no longer positive definite
-  std::uint32_t resets{0};         ///< of position and velocity after the gate had locked out
-  std::uint32_t realignments{0};   ///< of everything
+  bool at_rest{false};            ///< by the detector of the vehicle aiding
+  std::uint32_t repairs{0};       ///< of a covariance that was no longer positive definite
+  std::uint32_t resets{0};        ///< of position and velocity after the gate had locked out
+  std::uint32_t realignments{0};  ///< of everything
 };
 
 std::string_view name(Health::State state);

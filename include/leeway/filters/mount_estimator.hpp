@@ -11,8 +11,8 @@
 namespace leeway {
 
 /// Of filters whose body axes are the sensor's. Forward is where the vehicle goes when it goes fast
-/// and straight; down is where gravity pulls, once the slope of the road is taken out along forward.
-/// A vehicle that reverses slower than 5 m/s is not mistaken. No heap, no exceptions.
+/// and straight; down is where gravity pulls, once the slope of the road is taken out along
+/// forward. A vehicle that reverses slower than 5 m/s is not mistaken. No heap, no exceptions.
 class MountEstimator {
  public:
   static constexpr double kMinSpeedMps = 5.0;

@@ -11,9 +11,10 @@
 namespace leeway {
 
 /// A factor on the standard deviations that a receiver claims, learned from how much the
-/// innovations change from one fix to the next: that is its noise, while what they have in common is
-/// an error that lasts, the receiver's or the filter's. Up to 10 when the receiver is over-confident;
-/// within a band around 1 the claim is left alone. Source: docs/theory/noise_scale.md.
+/// innovations change from one fix to the next: that is its noise, while what they have in common
+/// is an error that lasts, the receiver's or the filter's. Up to 10 when the receiver is
+/// over-confident; within a band around 1 the claim is left alone. Source:
+/// docs/theory/noise_scale.md.
 class NoiseScale {
  public:
   /// @param smallest  how far down a modest claim may be scaled, at most 1. Errors that are alike

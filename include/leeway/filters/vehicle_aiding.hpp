@@ -9,8 +9,8 @@
 namespace leeway {
 
 /// Each part is off unless switched on; car() is the set for a road vehicle. Sigmas of constraints
-/// stand for errors that last, fused twice a second as if they were white: they are larger than what
-/// the innovations show (docs/theory/vehicle_aiding.md).
+/// stand for errors that last, fused twice a second as if they were white: they are larger than
+/// what the innovations show (docs/theory/vehicle_aiding.md).
 struct VehicleConfig {
   bool zero_velocity{false};
   bool zero_angular_rate{false};
@@ -19,15 +19,15 @@ struct VehicleConfig {
   bool barometer{false};
 
   StandstillConfig standstill{};
-  double rest_sigma_mps{0.02};         ///< velocity at rest: the body on its springs
+  double rest_sigma_mps{0.05};         ///< velocity at rest: the body on its springs
   double rest_turn_sigma_radps{2e-5};  ///< rate at rest, beyond the gyro's white noise
   double min_speed_mps{2.0};           ///< below it the constraint says little of the heading
-  double right_sigma_mps{0.1};         ///< velocity of the rear axle to the right ...
-  double right_sigma_m{0.5};           ///< ... and more by this times the rate of turn: slip
-  double down_sigma_mps{0.1};          ///< velocity of the rear axle downwards: springs, road
+  double right_sigma_mps{0.06};        ///< velocity of the rear axle to the right ...
+  double right_sigma_m{1.0};           ///< ... and more by this times the rate of turn: slip
+  double down_sigma_m2ps2{1.2};        ///< times 1 / speed: its velocity downwards, brakes, humps
   double rear_axle_x_m{-1.3};          ///< IMU to rear axle along the body's x axis
   double rear_axle_sigma_m{0.5};
-  double mount_sigma_rad{0.05};        ///< pitch and yaw of the mount
+  double mount_sigma_rad{0.05};  ///< pitch and yaw of the mount
   double mount_walk_rad_per_sqrt_s{2e-5};
   double odometer_scale_sigma{0.03};
   double odometer_walk_per_sqrt_s{1e-5};

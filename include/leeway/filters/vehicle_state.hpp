@@ -37,7 +37,7 @@ using JointMatrix = Eigen::Matrix<double, kJointStates, kJointStates>;
 struct VehicleState {
   VehicleVector value{VehicleVector::Zero()};
   VehicleMatrix P{VehicleMatrix::Zero()};
-  VehicleCross cross{VehicleCross::Zero()};                ///< covariance of the 15 errors with these
+  VehicleCross cross{VehicleCross::Zero()};  ///< covariance of the 15 errors with these
   VehicleVector random_walk_per_s{VehicleVector::Zero()};  ///< growth of the diagonal of P
 };
 

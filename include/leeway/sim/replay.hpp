@@ -47,15 +47,16 @@ struct ReplayResult {
   double first_solution_s{};
   double last_solution_s{};
   bool has_solution{false};
-  std::int64_t fixes_in_span{0};  ///< of the IMU data; 0: the logs do not share a time line
+  std::int64_t fixes_in_span{0};        ///< of the IMU data; 0: the logs do not share a time line
   std::vector<OutageResult> outages{};  ///< in the order given
   RmsErrors rms{};
   std::array<std::uint64_t, kVerdicts> verdicts{};
-  std::int64_t fixes{0};    ///< that the filter judged: fused or gated
-  double nis_mean{};        ///< over the fused fixes
-  double nis_dof_mean{};    ///< what the mean should be
-  Health health{};          ///< at the end
-  std::optional<Eigen::Vector3d> mount_rpy_deg{};  ///< found: Rz(Y) Ry(P) Rx(R), to forward, right, down
+  std::int64_t fixes{0};  ///< that the filter judged: fused or gated
+  double nis_mean{};      ///< over the fused fixes
+  double nis_dof_mean{};  ///< what the mean should be
+  Health health{};        ///< at the end
+  std::optional<Eigen::Vector3d>
+      mount_rpy_deg{};      ///< found: Rz(Y) Ry(P) Rx(R), to forward, right, down
   double final_roll_deg{};  ///< attitude at the end: beyond 90 deg the mount is upside down
   LogReport imu_report{};
   LogReport gnss_report{};
