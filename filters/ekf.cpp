@@ -272,6 +272,14 @@ void Ekf::restart_motion(const Eigen::Vector3d& r_e_m, const Eigen::Matrix3d& P_
   vehicle_.cross.middleRows<6>(kDv).setZero();
 }
 
+bool Ekf::is_sane() const {
+  constexpr double kLargest = 1e30;
+  const double sizes = estimate_.nav.r_e_m.squaredNorm() + estimate_.nav.v_e_mps.squaredNorm() +
+                       estimate_.nav.q_eb.squaredNorm() + estimate_.bias.b_a_mps2.squaredNorm() +
+                       estimate_.bias.b_g_radps.squaredNorm();
+  return sizes < kLargest && P_.cwiseAbs().sum() < kLargest;
+}
+
 bool Ekf::repair_covariance() {
   if (Eigen::LLT<ErrorMatrix>(P_).info() == Eigen::Success) return true;
   constexpr double kFloor = 1e-9;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint32_t kWidenFrom = 3;  // fixes refused in a row: chance alone does not do it
 constexpr std::uint32_t kRestartFrom = 10;
-constexpr double kWidening = 2.0;   // of P, at each of them
+constexpr double kWidening = 2.0;  // of P, at each of them
+constexpr double kUnknownVelocityMps = 30.0;
 constexpr double kRelapseS = 60.0;  // locked out again this soon: the attitude is wrong too
 
 AlignmentConfig alignment_of(const NavigatorConfig& config) {
@@ -80,6 +81,7 @@ void Fusion::integrate(const ImuIncrement& inc) {
   if (!bank_) return aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
   aiding_.push(in_body, *bank_);
+  guard_numbers();
 }
 
 void Fusion::bridge(Time to) {
@@ -99,7 +101,8 @@ Verdict Fusion::fuse(const GnssFix& fix) {
   const FixTrust trust{position_noise_.sigma_scale(), velocity_noise_.sigma_scale()};
   last_update_ = bank_->update([&](Ekf& filter) { return filter.update(fix, trust); });
   const Verdict verdict = settle(fix);
-  guard_numbers();
+  if (bank_) guard_numbers();
+  if (bank_) watch_covariance();
   if (bank_ && !C_bs_) find_mount();
   return verdict;
 }
@@ -144,25 +147,33 @@ void Fusion::follow_drift() {
 Verdict Fusion::locked_out(const GnssFix& fix) {
   if (gated_in_a_row_++ == 0) gated_since_ = fix.time;
   if (gated_in_a_row_ < kWidenFrom) return Verdict::kGated;
-  if (gated_in_a_row_ < kRestartFrom || !fix.position || !fix.velocity) {
+  if (gated_in_a_row_ < kRestartFrom) {
     bank_->for_each([](Ekf& filter) { filter.widen(kWidening); });
     return Verdict::kGated;
   }
+  if (!fix.position) return Verdict::kGated;
   ++resets_;
   const bool relapse = last_reset_ && to_seconds(fix.time - *last_reset_) < kRelapseS;
   last_reset_ = fix.time;
   if (relapse) {
     realign();
-    return Verdict::kReset;
+  } else {
+    restart_motion(fix);
   }
+  return Verdict::kReset;
+}
+
+void Fusion::restart_motion(const GnssFix& fix) {
+  const Eigen::Matrix3d unknown =
+      kUnknownVelocityMps * kUnknownVelocityMps * Eigen::Matrix3d::Identity();
   bank_->for_each([&](Ekf& filter) {
-    filter.restart_motion(fix.position->r_e_m, fix.position->R_e_m2, fix.velocity->v_e_mps,
-                          fix.velocity->R_e_m2ps2);
+    filter.restart_motion(fix.position->r_e_m, fix.position->R_e_m2,
+                          fix.velocity ? fix.velocity->v_e_mps : filter.estimate().nav.v_e_mps,
+                          fix.velocity ? fix.velocity->R_e_m2ps2 : unknown);
   });
   last_fused_ = fix.time;
   gated_in_a_row_ = 0;
   gated_since_.reset();
-  return Verdict::kReset;
 }
 
 void Fusion::realign() {
@@ -176,15 +187,15 @@ void Fusion::realign() {
 }
 
 void Fusion::guard_numbers() {
-  if (!bank_) return;
-  bool finite = true;
-  bank_->for_each([&](Ekf& filter) {
-    const Estimate& estimate = filter.estimate();
-    finite = finite && estimate.nav.q_eb.coeffs().allFinite() && estimate.nav.v_e_mps.allFinite() &&
-             estimate.nav.r_e_m.allFinite() && filter.covariance().allFinite();
-    if (finite && !filter.repair_covariance()) ++repairs_;
+  bool sane = true;
+  bank_->for_each([&](Ekf& filter) { sane = sane && filter.is_sane(); });
+  if (!sane) realign();
+}
+
+void Fusion::watch_covariance() {
+  bank_->for_each([this](Ekf& filter) {
+    if (!filter.repair_covariance()) ++repairs_;
   });
-  if (!finite) realign();
 }
 
 void Fusion::find_mount() {

@@ -126,6 +126,7 @@ void History::forget_old() {
 }
 
 History::Place History::push(const Event& event) {
+  if (events_.full()) make_room();
   const bool within = now_ && event.time <= *now_;
   if (within && (event.time <= checkpoints_.front().time ||
                  to_seconds(*now_ - event.time) > config_.timing.max_lateness_s)) {
@@ -145,6 +146,14 @@ History::Place History::push(const Event& event) {
   while (checkpoints_[checkpoint].time >= event.time) --checkpoint;
   rewind(checkpoint);
   return Place::kWithin;
+}
+
+void History::make_room() {
+  while (events_.full() && checkpoints_.size() > 1) {
+    checkpoints_.pop_front();
+    forget_old();
+  }
+  if (events_.full() && events_.front().done) restart(fusion_, *now_);
 }
 
 void History::rewind(std::size_t checkpoint) {

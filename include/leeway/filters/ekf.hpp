@@ -120,6 +120,9 @@ class Ekf {
   void restart_motion(const Eigen::Vector3d& r_e_m, const Eigen::Matrix3d& P_rr_m2,
                       const Eigen::Vector3d& v_e_mps, const Eigen::Matrix3d& P_vv_m2ps2);
 
+  /// Whether estimate and covariance are numbers of a size that arithmetic can bear.
+  bool is_sane() const;
+
   /// Whether P is positive definite. If not, its negative directions are raised to a billionth of
   /// their scale. @returns whether there was nothing to repair.
   bool repair_covariance();

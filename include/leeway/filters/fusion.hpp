@@ -80,7 +80,9 @@ class Fusion {
   void follow_drift();
   Verdict locked_out(const GnssFix& fix);
   void realign();
+  void restart_motion(const GnssFix& fix);
   void guard_numbers();
+  void watch_covariance();
   Ekf any_filter() const;
 
   NavigatorConfig config_;

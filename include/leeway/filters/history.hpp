@@ -93,6 +93,7 @@ class History {
   void rewind(std::size_t checkpoint);
   void keep_checkpoint();
   void forget_old();
+  void make_room();
   std::size_t place_of(const Event& event) const;
 
   NavigatorConfig config_;
