@@ -11,12 +11,14 @@
 
 namespace leeway {
 namespace {
+
 // What each was chosen by: docs/theory/heading_bank.md.
 constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where twelve members do not reach
 constexpr double kEvidenceCorrelationS = 2.0;
 constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S that decides nothing
 constexpr double kMemory = 10.0;             // independent measurements
 constexpr double kNegligibleVariance = 0.5;  // relative
+
 constexpr double kPi = 180.0 * kRadPerDeg;
 
 /// The estimate with the vehicle turned about the antenna.
