@@ -116,11 +116,14 @@ void HeadingBank::weigh(const Reports& reports) {
     if (!members_[k]) continue;
     const UpdateReport& r = reports[k];
     surprise[k] = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
-    if (r.outcome == UpdateReport::Outcome::kUnusable || !std::isfinite(surprise[k])) {
+    const bool broken =
+        r.outcome == UpdateReport::Outcome::kUnusable || !std::isfinite(surprise[k]);
+    if (broken && !collapsed()) {
       drop(k);
-    } else {
-      least = std::min(least, surprise[k]);
+      continue;
     }
+    if (broken) surprise[k] = 0.0;  // the last one stays, whatever it is
+    least = std::min(least, surprise[k]);
   }
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     log_weight_[k] *= 1.0 - weight / kMemory;
