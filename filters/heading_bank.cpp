@@ -11,12 +11,14 @@
 
 namespace leeway {
 namespace {
+
 // What each was chosen by: docs/theory/heading_bank.md.
 constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where twelve members do not reach
 constexpr double kEvidenceCorrelationS = 2.0;
 constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S that decides nothing
 constexpr double kMemory = 10.0;             // independent measurements
 constexpr double kNegligibleVariance = 0.5;  // relative
+
 constexpr double kPi = 180.0 * kRadPerDeg;
 
 /// The estimate with the vehicle turned about the antenna.
@@ -114,11 +116,14 @@ void HeadingBank::weigh(const Reports& reports) {
     if (!members_[k]) continue;
     const UpdateReport& r = reports[k];
     surprise[k] = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
-    if (r.outcome == UpdateReport::Outcome::kUnusable || !std::isfinite(surprise[k])) {
+    const bool broken =
+        r.outcome == UpdateReport::Outcome::kUnusable || !std::isfinite(surprise[k]);
+    if (broken && !collapsed()) {
       drop(k);
-    } else {
-      least = std::min(least, surprise[k]);
+      continue;
     }
+    if (broken) surprise[k] = 0.0;  // the last one stays, whatever it is
+    least = std::min(least, surprise[k]);
   }
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     log_weight_[k] *= 1.0 - weight / kMemory;

@@ -16,7 +16,7 @@
 namespace leeway {
 
 /// After construction nothing here allocates, throws, logs or locks; same inputs give the same
-/// bits. A copy of a collapsed bank copies one filter. About 60 kB with every member.
+/// bits. A copy of a collapsed bank copies one filter. The object takes 50 kB.
 /// Source: Alspach and Sorenson (1972); docs/theory/heading_bank.md.
 class HeadingBank {
  public:
