@@ -51,6 +51,33 @@ class Reference {
   Time to_;
 };
 
+/// The readings of a sensor whose log may be missing, in the order of time.
+template <class Reading>
+class Readings {
+ public:
+  Readings(const std::filesystem::path& path, const ScalarColumns& columns, double sigma)
+      : sigma_(sigma) {
+    if (path.empty()) return;
+    reader_.emplace(path, columns);
+    next_ = reader_->next();
+  }
+
+  /// Calls f with every reading up to t that has not been taken.
+  template <class F>
+  void take_until(Time t, F&& f) {
+    for (; next_ && next_->time <= t; next_ = reader_->next()) {
+      f(Reading{next_->time, next_->value, std::isfinite(next_->sigma) ? next_->sigma : sigma_});
+    }
+  }
+
+  LogReport report() const { return reader_ ? reader_->report() : LogReport{}; }
+
+ private:
+  double sigma_;
+  std::optional<ScalarLogReader> reader_{};
+  std::optional<ScalarRecord> next_{};
+};
+
 /// One outage: a copy of the navigator that goes on without fixes.
 class Branch {
  public:
@@ -64,6 +91,7 @@ class Branch {
   std::size_t index() const { return index_; }
   Time start() const { return start_; }
   bool over() const { return over_; }
+  bool is_running() const { return navigator_.has_value(); }
   const OutageResult& result() const { return result_; }
 
   void begin(const Navigator& aided) {
@@ -73,6 +101,12 @@ class Branch {
   bool withholds(Time t) const { return navigator_ && !over_ && t > start_ && t <= end_; }
 
   void withhold(const GnssFix& fix) { withheld_ = fix; }
+
+  /// Aiding goes on through an outage. @pre begin() has been called.
+  template <class Reading>
+  void push(const Reading& reading) {
+    navigator_->push(reading);
+  }
 
   /// @pre begin() has been called.
   void push(const ImuIncrement& inc, Reference* reference) {
@@ -175,6 +209,8 @@ class Replay {
   Replay(const ReplayInput& input, const NavigatorConfig& config)
       : imu_(input.imu, input.imu_options),
         gnss_(input.gnss, input.gnss_options),
+        odometer_(input.odometer, odometer_columns(), OdometerSpeed{}.sigma_mps),
+        barometer_(input.barometer, barometer_columns(), BarometricHeight{}.sigma_m),
         navigator_(config),
         output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)) {
     if (!input.truth.empty()) reference_.emplace(input);
@@ -213,6 +249,14 @@ class Replay {
     }
     imu_started_ = true;
     begin_branches(t);
+    const auto push_to_all = [this](const auto& reading) {
+      for (Branch& branch : branches_) {
+        if (branch.is_running()) branch.push(reading);
+      }
+      navigator_.push(reading);
+    };
+    odometer_.take_until(t, push_to_all);
+    barometer_.take_until(t, push_to_all);
   }
 
   void begin_branches(Time t) {
@@ -284,12 +328,16 @@ class Replay {
     }
     result_.imu_report = imu_.report();
     result_.gnss_report = gnss_.report();
+    result_.odometer_report = odometer_.report();
+    result_.barometer_report = barometer_.report();
     if (reference_) result_.truth_report = reference_->report();
     return result_;
   }
 
   ImuLogReader imu_;
   GnssLogReader gnss_;
+  Readings<OdometerSpeed> odometer_;
+  Readings<BarometricHeight> barometer_;
   Navigator navigator_;
   Duration output_interval_;
   std::optional<Reference> reference_{};
@@ -306,6 +354,9 @@ class Replay {
 };
 
 }  // namespace
+
+ScalarColumns odometer_columns() { return {"speed_mps", "sigma_mps", 500.0}; }
+ScalarColumns barometer_columns() { return {"height_m", "sigma_m", 1e5}; }
 
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const std::function<void(Time)>& progress) {

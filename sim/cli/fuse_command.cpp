@@ -84,6 +84,8 @@ void add_log_options(CLI::App& app, FuseLogs& logs) {
   for (CLI::Option* option :
        {file("--imu", logs.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip"),
         file("--gnss", logs.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip"),
+        file("--odometer", logs.odometer, "speed log, CSV: t_s, speed_mps and maybe sigma_mps"),
+        file("--barometer", logs.barometer, "height log, CSV: t_s, height_m and maybe sigma_m"),
         file("--truth", logs.truth,
              "truth or reference log to measure errors against; without it the errors of outages "
              "are measured against the withheld fixes"),

@@ -64,6 +64,12 @@ void inspect(FuseJob& job) {
   if (can_be_read_twice(in.gnss)) {
     job.gnss_format = format_name(GnssLogReader(in.gnss, in.gnss_options).format());
   }
+  if (!in.odometer.empty() && can_be_read_twice(in.odometer)) {
+    ScalarLogReader{in.odometer, sim::odometer_columns()};
+  }
+  if (!in.barometer.empty() && can_be_read_twice(in.barometer)) {
+    ScalarLogReader{in.barometer, sim::barometer_columns()};
+  }
   if (!in.truth.empty() && can_be_read_twice(in.truth)) TruthLogReader{in.truth};
 }
 
@@ -98,6 +104,8 @@ FuseJob job_of_logs(const FuseOptions& options) {
   job.mount_rpy_deg = logs.mount_rpy_deg;
   job.input.imu = logs.imu;
   job.input.gnss = logs.gnss;
+  job.input.odometer = logs.odometer;
+  job.input.barometer = logs.barometer;
   job.input.solution = options.output.solution;
   set_truth(job.input, logs.truth, logs.truth_window_s);
   if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);
@@ -144,15 +152,16 @@ const std::vector<std::string>& scheme_names() {
 }
 
 const std::vector<std::string>& vehicle_part_names() {
-  static const std::vector<std::string> names{"zero-velocity", "zero-angular-rate",
-                                              "non-holonomic"};
+  static const std::vector<std::string> names{"zero-velocity", "zero-angular-rate", "non-holonomic",
+                                              "odometer", "barometer"};
   return names;
 }
 
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
   if (vehicle.name == "none") return {};
   VehicleConfig config = VehicleConfig::car();
-  bool* const parts[] = {&config.zero_velocity, &config.zero_angular_rate, &config.non_holonomic};
+  bool* const parts[] = {&config.zero_velocity, &config.zero_angular_rate, &config.non_holonomic,
+                         &config.odometer, &config.barometer};
   for (const std::string& part : vehicle.without) {
     *parts[index_of(vehicle_part_names(), part)] = false;
   }
@@ -174,6 +183,9 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
 
 std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
+  if (options.vehicle.name == "none" && !(logs.odometer.empty() && logs.barometer.empty())) {
+    throw Error("--odometer and --barometer are used with --vehicle car");
+  }
   if (logs.drives.empty() && (logs.imu.empty() || logs.gnss.empty())) {
     throw Error("fuse needs --imu and --gnss, or --drive");
   }

@@ -19,6 +19,8 @@ struct FuseLogs {
   std::vector<std::filesystem::path> drives{};
   std::filesystem::path imu{};
   std::filesystem::path gnss{};
+  std::filesystem::path odometer{};
+  std::filesystem::path barometer{};
   std::filesystem::path truth{};
   std::filesystem::path outages{};
   std::optional<Eigen::Vector2d> truth_window_s{};

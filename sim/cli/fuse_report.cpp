@@ -68,6 +68,12 @@ void print_inputs(const FuseJob& job) {
   };
   add("IMU", job.imu_format, job.result.imu_report, job.input.imu);
   add("GNSS", job.gnss_format, job.result.gnss_report, job.input.gnss);
+  if (!job.input.odometer.empty()) {
+    add("odometer", "CSV", job.result.odometer_report, job.input.odometer);
+  }
+  if (!job.input.barometer.empty()) {
+    add("barometer", "CSV", job.result.barometer_report, job.input.barometer);
+  }
   if (!job.input.truth.empty()) add("truth", "CSV", job.result.truth_report, job.input.truth);
   fmt::print("Input\n");
   table.print();
@@ -226,6 +232,8 @@ void warn(const FuseJob& job) {
   const std::string where = job.drive.empty() ? "" : job.drive + ": ";
   warn_of_log("IMU", job.input.imu, r.imu_report);
   warn_of_log("GNSS", job.input.gnss, r.gnss_report);
+  warn_of_log("odometer", job.input.odometer, r.odometer_report);
+  warn_of_log("barometer", job.input.barometer, r.barometer_report);
   if (!job.input.truth.empty()) warn_of_log("truth", job.input.truth, r.truth_report);
   if (const auto n = count(r, Verdict::kGap); n > 0) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);

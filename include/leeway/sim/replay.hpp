@@ -13,6 +13,7 @@
 #include "leeway/filters/navigator.hpp"
 #include "leeway/gnss_log.hpp"
 #include "leeway/imu_log.hpp"
+#include "leeway/scalar_log.hpp"
 #include "leeway/sim/outage.hpp"
 #include "leeway/truth_log.hpp"
 
@@ -21,8 +22,10 @@ namespace leeway::sim {
 struct ReplayInput {
   std::filesystem::path imu{};
   std::filesystem::path gnss{};
-  std::filesystem::path truth{};     ///< empty: errors against withheld fixes
-  std::filesystem::path solution{};  ///< empty: none is written
+  std::filesystem::path odometer{};   ///< empty: none; t_s, speed_mps and maybe sigma_mps
+  std::filesystem::path barometer{};  ///< empty: none; t_s, height_m and maybe sigma_m
+  std::filesystem::path truth{};      ///< empty: errors against withheld fixes
+  std::filesystem::path solution{};   ///< empty: none is written
   ImuLogOptions imu_options{};
   GnssLogOptions gnss_options{};
   std::vector<Outage> outages{};
@@ -61,7 +64,13 @@ struct ReplayResult {
   LogReport imu_report{};
   LogReport gnss_report{};
   LogReport truth_report{};
+  LogReport odometer_report{};
+  LogReport barometer_report{};
 };
+
+/// What the logs of odometer and barometer hold.
+ScalarColumns odometer_columns();
+ScalarColumns barometer_columns();
 
 /// Runs the log in one pass and constant memory. Every outage branches from the fully aided state,
 /// so outages may overlap. @param progress  called now and then with the time reached
