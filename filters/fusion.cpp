@@ -73,7 +73,15 @@ void Fusion::begin(const HeadingBank& bank) {
 
 void Fusion::begin_vehicle() {
   if (!config_.vehicle.uses_parameters()) return;
-  bank_->for_each([this](Ekf& filter) { filter.estimate_vehicle(vehicle_state(config_.vehicle)); });
+  VehicleState vehicle = vehicle_state(config_.vehicle);
+  if (!config_.C_bs) {
+    // A mount that was found is as good as the heading was.
+    constexpr double kFound = MountEstimator::kMaxHeadingSigmaRad;
+    for (const int angle : {kMountPitch, kMountYaw}) {
+      vehicle.P(angle, angle) = std::max(vehicle.P(angle, angle), kFound * kFound);
+    }
+  }
+  bank_->for_each([&](Ekf& filter) { filter.estimate_vehicle(vehicle); });
 }
 
 void Fusion::integrate(const ImuIncrement& inc) {

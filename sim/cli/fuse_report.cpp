@@ -248,7 +248,7 @@ void warn(const FuseJob& job) {
     spdlog::warn("{}the covariance had to be repaired {} times", where, r.health.repairs);
   }
   if (job.estimates_mount && !r.mount_rpy_deg) {
-    spdlog::warn("{}the mount was not found: that takes 5 s straight on at more than 5 m/s", where);
+    spdlog::warn("{}the mount was not found: that takes 3 s straight on at more than 5 m/s", where);
   }
   if (const auto n = count(r, Verdict::kGated); n > 0) {
     spdlog::warn("{}{} fixes were refused by the gate", where, n);

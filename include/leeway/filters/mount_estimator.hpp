@@ -17,8 +17,8 @@ class MountEstimator {
  public:
   static constexpr double kMinSpeedMps = 5.0;
   static constexpr double kMaxTurnRadps = 0.05;
-  static constexpr double kMaxHeadingSigmaRad = 0.05;
-  static constexpr double kEnoughS = 5.0;
+  static constexpr double kMaxHeadingSigmaRad = 0.1;
+  static constexpr double kEnoughS = 3.0;
 
   /// After a fix has been fused. What counts is the heading of the whole bank.
   void push(const HeadingBank& bank);
