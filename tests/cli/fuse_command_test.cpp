@@ -98,7 +98,7 @@ std::string in_sensor_axes(const std::array<std::size_t, 3>& from,
     std::ostringstream text;
     text.precision(17);
     text << row[0] << "," << row[1];
-    for (const std::size_t triad : {2, 5}) {
+    for (const std::size_t triad : {2u, 5u}) {
       for (std::size_t i = 0; i < 3; ++i) text << "," << sign[i] * row[triad + from[i]];
     }
     lines[k] = text.str();

@@ -99,9 +99,10 @@ TEST_CASE("a solution is written in the columns of its header, positions to 0.1 
                                              {"sigma_b_gz_radps", 2.3e-9},
                                              {"nis", 5.5},
                                              {"nis_dof", 6}};
-  for (const auto& [name, value] : single) {
-    CAPTURE(name);
-    CHECK(near(row.at(name), value, 6e-8 * std::abs(value)));  // single precision, relative
+  for (const auto& column : single) {
+    CAPTURE(column.first);
+    const double tolerance = 6e-8 * std::abs(column.second);  // single precision, relative
+    CHECK(near(row.at(column.first), column.second, tolerance));
   }
 }
 

@@ -269,8 +269,8 @@ TEST_CASE("precise fixes on a vague prior leave P positive definite and accurate
     double sigma_m;
     double tolerance;  // of sqrt(P_ii P_jj): grows with the squared ratio of the sigmas
   };
-  for (const auto [sigma_m, tolerance] : {Case{0.1, 1e-9}, Case{0.01, 1e-7}, Case{1e-4, 1e-3}}) {
-    CAPTURE(sigma_m);
+  for (const Case& c : {Case{0.1, 1e-9}, Case{0.01, 1e-7}, Case{1e-4, 1e-3}}) {
+    CAPTURE(c.sigma_m);
     const Scene scene = random_scene(1);
     ErrorDynamics step = scene.step;
     step.dt_s = 0.1;
@@ -298,15 +298,15 @@ TEST_CASE("precise fixes on a vague prior leave P positive definite and accurate
       ErrorVector x = ErrorVector::Zero();
       for (int axis = 0; axis < 3; ++axis) {
         ErrorVector h = ErrorVector::Zero();
-        h.segment<3>(kPsi) = -lever.row(axis).transpose() / sigma_m;
-        h(kDr + axis) = 1.0 / sigma_m;
+        h.segment<3>(kPsi) = -lever.row(axis).transpose() / c.sigma_m;
+        h(kDr + axis) = 1.0 / c.sigma_m;
         CHECK(scalar_update(P, x, h, 0.0) > 1.0);
         add_information(information, h);
       }
       reference = inverse(information);
       REQUIRE(positive_definite(P));
       CHECK(exactly_symmetric(P));
-      CHECK(scaled_distance(P, rounded(reference)) < tolerance);
+      CHECK(scaled_distance(P, rounded(reference)) < c.tolerance);
     }
   }
 }

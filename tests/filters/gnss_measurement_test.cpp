@@ -49,18 +49,18 @@ TEST_CASE("H is the derivative of the innovation with respect to the error") {
   const ErrorVector steps = test::jacobian_steps(0.01, 10.0, 1000.0, 1.0, 0.1);
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Setup s = random_setup(seed);
-    for (const auto [position, velocity] : kParts) {
+    for (const auto& part : kParts) {
       CAPTURE(seed);
-      CAPTURE(position);
-      CAPTURE(velocity);
-      const auto measure = [&, p = position, v = velocity](const ErrorVector& x) {
+      CAPTURE(part.position);
+      CAPTURE(part.velocity);
+      const auto measure = [&](const ErrorVector& x) {
         Estimate truth = s.estimate;
         inject(truth, x);
-        return gnss_measurement(perfect_fix(truth, s, p, v), s.estimate, s.lever_b_m,
-                                s.omega_b_radps);
+        return gnss_measurement(perfect_fix(truth, s, part.position, part.velocity), s.estimate,
+                                s.lever_b_m, s.omega_b_radps);
       };
       const Measurement m = measure(ErrorVector::Zero());
-      REQUIRE(m.rows() == 3 * (position + velocity));
+      REQUIRE(m.rows() == 3 * (part.position + part.velocity));
       // Injecting zero renormalizes the quaternion: a rounding of 300 m/s and 6.4e6 m.
       CHECK(m.innovation.cwiseAbs().maxCoeff() < 2e-9);
       for (int row = 0; row < m.rows(); row += 3) {

@@ -244,9 +244,9 @@ TEST_CASE("a transition frozen at the fix overstates a bias on a circle; advance
     double duration_s;
     double overstated;
   };
-  for (const auto [duration_s, overstated] : {Case{10.0, 1.6}, Case{60.0, 12.0}}) {
-    CAPTURE(duration_s);
-    const auto increments = sim::true_increments(trajectory, 100.0, duration_s);
+  for (const Case& c : {Case{10.0, 1.6}, Case{60.0, 12.0}}) {
+    CAPTURE(c.duration_s);
+    const auto increments = sim::true_increments(trajectory, 100.0, c.duration_s);
     const Transition Phi = accumulated(start.nav, increments);
     Transition frozen;
     ErrorDynamics d;
@@ -257,14 +257,14 @@ TEST_CASE("a transition frozen at the fix overstates a bias on a circle; advance
     for (std::size_t k = 0; k < increments.size(); ++k) advance(frozen, d);
 
     const double right_m = Phi.r_a.col(0).norm();
-    const double angle = omega_radps * duration_s;
+    const double angle = omega_radps * c.duration_s;
     const double closed_m =
         std::hypot(std::cos(angle) - 1.0, std::sin(angle) - angle) / (omega_radps * omega_radps);
     // The closed form knows neither gravity gradient nor Coriolis: (t / 800 s)^2 of it at most.
     CHECK(near(right_m / closed_m, 1.0, 0.01));
-    CHECK(near(frozen.r_a.col(0).norm() / right_m, overstated, 0.04 * overstated));
+    CHECK(near(frozen.r_a.col(0).norm() / right_m, c.overstated, 0.04 * c.overstated));
 
-    const auto fine = sim::true_increments(trajectory, 200.0, duration_s);
+    const auto fine = sim::true_increments(trajectory, 200.0, c.duration_s);
     Estimate unbiased = start;
     Estimate biased = start;
     biased.bias.b_a_mps2.x() = 0.01;
