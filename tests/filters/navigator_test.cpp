@@ -169,7 +169,10 @@ TEST_CASE("bad fixes: their verdict, their count, and nothing else") {
       {"at the centre", [](GnssFix& f) { f.position->r_e_m.setZero(); }, Verdict::kImplausible},
       {"20 km/s", [](GnssFix& f) { f.velocity->v_e_mps.x() = 2e4; }, Verdict::kImplausible},
       {"nothing in it", [](GnssFix& f) { f = GnssFix{f.time}; }, Verdict::kImplausible},
-      {"late", [](GnssFix& f) { f.time -= duration_from_seconds(0.008); }, Verdict::kLate},
+      {"from before the start", [](GnssFix& f) { f.time -= duration_from_seconds(1.0); },
+       Verdict::kLate},
+      {"from the future", [](GnssFix& f) { f.time += duration_from_seconds(10.0); },
+       Verdict::kFuture},
   };
   Navigator clean = started();
   run(clean, 0.0, 0.3);
@@ -190,7 +193,7 @@ TEST_CASE("bad fixes: their verdict, their count, and nothing else") {
   }
 }
 
-TEST_CASE("fixes twice, back in time, too many, and an outlier") {
+TEST_CASE("fixes twice, in any order, too many, and an outlier") {
   Navigator navigator = started();
   run(navigator, 0.0, 1.0);
   Navigator clean = navigator;
@@ -200,9 +203,10 @@ TEST_CASE("fixes twice, back in time, too many, and an outlier") {
     return fix;
   };
   CHECK(navigator.push(fix_at(1.5)) == Verdict::kAccepted);
-  CHECK(clean.push(fix_at(1.5)) == Verdict::kAccepted);
   CHECK(navigator.push(fix_at(1.5)) == Verdict::kDuplicate);
-  CHECK(navigator.push(fix_at(1.2)) == Verdict::kOutOfOrder);
+  CHECK(navigator.push(fix_at(1.2)) == Verdict::kAccepted);
+  CHECK(clean.push(fix_at(1.2)) == Verdict::kAccepted);
+  CHECK(clean.push(fix_at(1.5)) == Verdict::kAccepted);
   GnssFix outlier = fix_at(1.7);
   outlier.position->r_e_m += Eigen::Vector3d(0.0, 0.0, 100.0);
   CHECK(navigator.push(outlier) == Verdict::kAccepted);
@@ -220,11 +224,11 @@ TEST_CASE("fixes twice, back in time, too many, and an outlier") {
   CHECK(navigator.last_update().nis > navigator.last_update().gate);
 
   int accepted = 0;
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 300; ++k) {
     accepted += navigator.push(fix_at(2.001 + 0.01 * k)) == Verdict::kAccepted;
   }
-  CHECK(accepted == 16);
-  CHECK(navigator.count(Verdict::kOverflow) == 4);
+  CHECK(accepted == 256);
+  CHECK(navigator.count(Verdict::kOverflow) == 44);
 }
 
 TEST_CASE("a fix acts at its own time: on a sample, between two, several within one") {
@@ -284,16 +288,19 @@ TEST_CASE("no IMU data for a while: a gap is bridged, sigmas grow, the filter re
         return (nav.r_e_m - sim::truth_at(c.trajectory, to_seconds(nav.time)).nav.r_e_m).norm();
       };
       std::size_t next = 0;
+      const Time begin = time_from_seconds(30.0);
+      const Time end = begin + duration_from_seconds(c.gap_s);
       for (const ImuIncrement& inc : log.imu) {
-        const double t_s = to_seconds(inc.time);
-        if (t_s > 30.0 && t_s < 30.0 + c.gap_s) continue;
+        if (inc.time > begin && inc.time < end) continue;
         const double sigma_before_m = horizontal_sigma_m(navigator);
         // The receiver is down as well; a fix that waited is tried in the next case.
         for (; next < log.fixes.size() && log.fixes[next].time <= inc.time; ++next) {
-          if (t_s != 30.0 + c.gap_s) navigator.push(log.fixes[next]);
+          if (inc.time != end) navigator.push(log.fixes[next]);
         }
+        // The time of the first record after the hole may be wrong: the second confirms it.
         const Verdict verdict = navigator.push(inc);
-        CHECK((verdict == Verdict::kGap) == (t_s == 30.0 + c.gap_s));
+        CHECK((verdict == Verdict::kFuture) == (inc.time == end));
+        CHECK((verdict == Verdict::kGap) == (inc.time == end + duration_from_seconds(0.01)));
         if (verdict != Verdict::kGap) continue;
         CHECK(horizontal_sigma_m(navigator) > 3.0 * sigma_before_m);
         CHECK(error_m() < 3.0 * horizontal_sigma_m(navigator));
@@ -310,8 +317,8 @@ TEST_CASE("fixes that wait through a gap act at their own times") {
   Navigator navigator = started();
   run(navigator, 0.0, 30.0);
   for (std::size_t k = 30; k < 35; ++k) navigator.push(recording().fixes[k]);
-  navigator.push(recording().imu[3499]);
-  CHECK(navigator.count(Verdict::kGap) == 1);
+  CHECK(navigator.push(recording().imu[3498]) == Verdict::kFuture);
+  CHECK(navigator.push(recording().imu[3499]) == Verdict::kGap);
   CHECK(navigator.count(Verdict::kFused) + navigator.count(Verdict::kGated) == 35);
   CHECK(horizontal_error_m(navigator) < 10.0);  // the last fix is half a second old
 }
@@ -418,6 +425,7 @@ TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted") 
     Navigator navigator = seed % 2 == 0 ? started() : Navigator{NavigatorConfig{}};
     Time now{};
     std::uint64_t inputs = 0;
+    bool was_aligned = false;
     for (int k = 0; k < 10'000; ++k) {
       now += duration_from_seconds(random.uniform() < 0.001 ? 3.0 * random.uniform() : 0.01);
       const Time jittered =
@@ -441,11 +449,12 @@ TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted") 
         navigator.push(inc);
       }
       ++inputs;
+      was_aligned = was_aligned || navigator.aligned();
       if (navigator.aligned() && k % 10 == 0) REQUIRE(all_finite(navigator.solution()));
     }
-    CHECK(navigator.aligned());
+    CHECK(was_aligned);
     CHECK(total(navigator) <= inputs);
-    CHECK(total(navigator) + 16 >= inputs);  // up to 16 fixes wait for their verdict
+    CHECK(total(navigator) + 256 >= inputs);  // up to 256 fixes wait for their verdict
     CHECK(navigator.count(Verdict::kFused) > 0);
   }
 }
