@@ -243,22 +243,20 @@ TEST_CASE("velocity_lag_s: a receiver that reports the mean of its epoch") {
 }
 
 TEST_CASE("position_lag_s: a position that is older than its stamp") {
-  test::Recording log = recording();
-  for (GnssFix& fix : log.fixes) fix.time += duration_from_seconds(0.1);
-  const auto error_m = [&](double lag_s) {
-    NavigatorConfig config;
-    config.timing.position_lag_s = lag_s;
-    config.timing.velocity_lag_s = lag_s;
-    Navigator navigator(config);
-    start(navigator, fast_circle());
-    run(navigator, log.imu, on_time(log.fixes));
-    return navigator;
-  };
-  // With both the same it is nothing but another stamp.
+  const auto imu = imu_until(20.0);
+  const auto fixes = fixes_until(19.5);
   Navigator clean{NavigatorConfig{}};
   start(clean, fast_circle());
-  run(clean, recording().imu, on_time(recording().fixes));
-  CHECK(same_bits(error_m(0.1), clean));
+  run(clean, imu, on_time(fixes));
+  std::vector<GnssFix> stamped_late = fixes;
+  for (GnssFix& fix : stamped_late) fix.time += duration_from_seconds(0.1);
+  NavigatorConfig config;
+  config.timing.position_lag_s = 0.1;
+  config.timing.velocity_lag_s = 0.1;
+  Navigator lagged(config);
+  start(lagged, fast_circle());
+  run(lagged, imu, on_time(stamped_late));
+  CHECK(same_bits(lagged, clean));  // with both the same it is nothing but another stamp
 }
 
 TEST_CASE("IMU data faster than foreseen leaves room for less lateness, and nothing breaks") {

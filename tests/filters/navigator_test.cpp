@@ -200,6 +200,9 @@ TEST_CASE("fixes twice, in any order, too many, and an outlier") {
   const auto fix_at = [](double t_s) {
     GnssFix fix = recording().fixes[1];
     fix.time = time_from_seconds(t_s);
+    const NavState truth = sim::truth_at(trajectory(), t_s).nav;
+    fix.position->r_e_m = truth.r_e_m;
+    fix.velocity->v_e_mps = truth.v_e_mps;
     return fix;
   };
   CHECK(navigator.push(fix_at(1.5)) == Verdict::kAccepted);
@@ -229,6 +232,53 @@ TEST_CASE("fixes twice, in any order, too many, and an outlier") {
   }
   CHECK(accepted == 256);
   CHECK(navigator.count(Verdict::kOverflow) == 44);
+}
+
+TEST_CASE("one outlier does not open the gate to the next") {
+  Navigator navigator = started();
+  run(navigator, 0.0, 40.4);
+  const double sigma_m = horizontal_sigma_m(navigator);
+  const auto wrong_by = [](double t_s, double off_m) {
+    GnssFix fix = recording().fixes[40];
+    fix.time = time_from_seconds(t_s);
+    fix.position->r_e_m = sim::truth_at(trajectory(), t_s).nav.r_e_m;
+    fix.position->r_e_m.z() += off_m;
+    fix.velocity.reset();
+    return fix;
+  };
+  CHECK(navigator.push(wrong_by(40.1, 1000.0)) == Verdict::kGated);
+  CHECK(horizontal_sigma_m(navigator) < 1.5 * sigma_m);
+  CHECK(navigator.push(wrong_by(40.3, 300.0)) == Verdict::kGated);
+  CHECK(horizontal_error_m(navigator) < 10.0);
+}
+
+TEST_CASE("samples over the end of a GPS week go on as without one") {
+  constexpr double kWeekS = 604800.0;
+  const auto drive = [](double begin_s, bool wraps) {
+    Navigator navigator{NavigatorConfig{}};
+    const auto time = [&](double t_s) {
+      const double at_s = begin_s + t_s;
+      return time_from_seconds(wraps && at_s >= kWeekS ? at_s - kWeekS : at_s);
+    };
+    std::size_t next = 0;
+    for (int k = 0; k <= 2000; ++k) {
+      const double t_s = 0.01 * k;
+      const sim::TruthPoint truth = sim::truth_at(trajectory(), t_s);
+      for (; next < 60 && to_seconds(recording().fixes[next].time) <= t_s; ++next) {
+        GnssFix fix = recording().fixes[next];
+        fix.time = time(to_seconds(fix.time));
+        navigator.push(fix);
+      }
+      navigator.push(ImuSample{time(t_s), truth.omega_ib_b_radps, truth.f_ib_b_mps2});
+    }
+    return navigator;
+  };
+  const Navigator wrapped = drive(kWeekS - 10.0, true);
+  const Navigator counted = drive(kWeekS - 10.0, false);
+  REQUIRE(counted.aligned());
+  REQUIRE(wrapped.aligned());
+  CHECK(same_bits(wrapped, counted));
+  CHECK(wrapped.count(Verdict::kFused) == counted.count(Verdict::kFused));
 }
 
 TEST_CASE("a fix acts at its own time: on a sample, between two, several within one") {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "leeway/sim/random.hpp"
@@ -35,7 +36,8 @@ struct Receiver {
     const Eigen::LLT<Eigen::Matrix3d> llt(R);
     NoiseScale scale(smallest);
     for (int k = 0; k < fixes; ++k) {
-      const Eigen::Vector3d z = truth * (llt.matrixL() * random.normal3()) + offset;
+      const Eigen::Vector3d z =
+          Eigen::Matrix3d(llt.matrixL()) * (truth * random.normal3()) + offset;
       const double nis = z.dot(llt.solve(z)) / (scale.sigma_scale() * scale.sigma_scale());
       scale.note(time_from_seconds(interval_s * k), z, R, nis);
       each(scale);
@@ -74,7 +76,8 @@ TEST_CASE("an honest receiver is left alone over 10000 fixes") {
   }
 }
 
-TEST_CASE("a sigma claimed three times too small is found within 10 %") {
+TEST_CASE("a sigma claimed three times too small is found, as far as the band around 1 allows") {
+  double mean = 0.0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     double sum = 0.0;
@@ -82,8 +85,13 @@ TEST_CASE("a sigma claimed three times too small is found within 10 %") {
     Receiver{.truth = 3.0}.run(1.0, seed, 2000, [&](const NoiseScale& scale) {
       if (++count > 1000) sum += scale.sigma_scale();
     });
-    CHECK(near(sum / 1000.0, 3.0, 0.3));
+    CAPTURE(sum / 1000.0);
+    // From below it may stop where the mean of squares is 1.6 times too large.
+    CHECK(sum / 1000.0 > 3.0 / std::sqrt(1.6));
+    CHECK(sum / 1000.0 < 3.3);
+    mean += 0.1 * sum / 1000.0;
   }
+  MESSAGE("mean over ten receivers: " << mean);
 }
 
 TEST_CASE("a modest claim is scaled down as far as allowed, no further") {

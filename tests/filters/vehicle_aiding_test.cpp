@@ -25,16 +25,14 @@ NavigatorConfig car_config() {
   return config;
 }
 
-constexpr double kOutageS = 60.0;
-
 /// Root mean square over seeds 1 to 5 of the error after an outage that begins in the drive.
-double outage_rms_m(const NavigatorConfig& config, bool odometer,
+double outage_rms_m(const NavigatorConfig& config, double outage_s, bool odometer,
                     const test::CarOptions& options = {}) {
   constexpr double kBeginS = 300.0;
   double sum_m2 = 0.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Navigator navigator = test::started_car(config);
-    run(navigator, test::drive(options, seed), kBeginS + kOutageS,
+    run(navigator, test::drive(options, seed), kBeginS + outage_s,
         {.gnss_until_s = kBeginS, .odometer = odometer});
     const double error_m = test::horizontal_error_m(navigator);
     sum_m2 += error_m * error_m;
@@ -48,13 +46,17 @@ double outage_rms_m(const NavigatorConfig& config, bool odometer,
 TEST_CASE("a minute without fixes: that it is a car takes off most of the drift, its wheels more") {
   NavigatorConfig plain = car_config();
   plain.vehicle = VehicleConfig{};
-  const double without_m = outage_rms_m(plain, false);
-  const double as_car_m = outage_rms_m(car_config(), false);
-  const double with_odometer_m = outage_rms_m(car_config(), true, {.odometer_scale = 0.02});
-  MESSAGE("after 60 s: " << without_m << " m, as a car " << as_car_m << " m, with its odometer "
-                         << with_odometer_m << " m");
-  CHECK(as_car_m < 0.5 * without_m);
-  CHECK(with_odometer_m < 0.5 * as_car_m);
+  const double without_m = outage_rms_m(plain, 60.0, false);
+  const double as_car_m = outage_rms_m(car_config(), 60.0, false);
+  MESSAGE("after 60 s: " << without_m << " m, as a car " << as_car_m << " m");
+  CHECK(as_car_m < 0.3 * without_m);
+  const double long_m = outage_rms_m(car_config(), 115.0, false);
+  const double wheels_m = outage_rms_m(car_config(), 115.0, true, {.odometer_scale = 0.02});
+  MESSAGE("as a car, after 115 s: " << long_m << " m, with an odometer that reads 2 % too much "
+                                    << wheels_m << " m");
+  // 2 % of 1 km, not found, were 20 m.
+  CHECK(wheels_m < long_m);
+  CHECK(wheels_m < 4.0);
 }
 
 TEST_CASE("a mount 2 deg off is found within three sigma, over seeds 1 to 20") {
