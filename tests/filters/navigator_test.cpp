@@ -169,7 +169,10 @@ TEST_CASE("bad fixes: their verdict, their count, and nothing else") {
       {"at the centre", [](GnssFix& f) { f.position->r_e_m.setZero(); }, Verdict::kImplausible},
       {"20 km/s", [](GnssFix& f) { f.velocity->v_e_mps.x() = 2e4; }, Verdict::kImplausible},
       {"nothing in it", [](GnssFix& f) { f = GnssFix{f.time}; }, Verdict::kImplausible},
-      {"late", [](GnssFix& f) { f.time -= duration_from_seconds(0.008); }, Verdict::kLate},
+      {"from before the start", [](GnssFix& f) { f.time -= duration_from_seconds(1.0); },
+       Verdict::kLate},
+      {"from the future", [](GnssFix& f) { f.time += duration_from_seconds(10.0); },
+       Verdict::kFuture},
   };
   Navigator clean = started();
   run(clean, 0.0, 0.3);
@@ -190,19 +193,23 @@ TEST_CASE("bad fixes: their verdict, their count, and nothing else") {
   }
 }
 
-TEST_CASE("fixes twice, back in time, too many, and an outlier") {
+TEST_CASE("fixes twice, in any order, too many, and an outlier") {
   Navigator navigator = started();
   run(navigator, 0.0, 1.0);
   Navigator clean = navigator;
   const auto fix_at = [](double t_s) {
     GnssFix fix = recording().fixes[1];
     fix.time = time_from_seconds(t_s);
+    const NavState truth = sim::truth_at(trajectory(), t_s).nav;
+    fix.position->r_e_m = truth.r_e_m;
+    fix.velocity->v_e_mps = truth.v_e_mps;
     return fix;
   };
   CHECK(navigator.push(fix_at(1.5)) == Verdict::kAccepted);
-  CHECK(clean.push(fix_at(1.5)) == Verdict::kAccepted);
   CHECK(navigator.push(fix_at(1.5)) == Verdict::kDuplicate);
-  CHECK(navigator.push(fix_at(1.2)) == Verdict::kOutOfOrder);
+  CHECK(navigator.push(fix_at(1.2)) == Verdict::kAccepted);
+  CHECK(clean.push(fix_at(1.2)) == Verdict::kAccepted);
+  CHECK(clean.push(fix_at(1.5)) == Verdict::kAccepted);
   GnssFix outlier = fix_at(1.7);
   outlier.position->r_e_m += Eigen::Vector3d(0.0, 0.0, 100.0);
   CHECK(navigator.push(outlier) == Verdict::kAccepted);
@@ -220,11 +227,61 @@ TEST_CASE("fixes twice, back in time, too many, and an outlier") {
   CHECK(navigator.last_update().nis > navigator.last_update().gate);
 
   int accepted = 0;
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 300; ++k) {
     accepted += navigator.push(fix_at(2.001 + 0.01 * k)) == Verdict::kAccepted;
   }
-  CHECK(accepted == 16);
-  CHECK(navigator.count(Verdict::kOverflow) == 4);
+  CHECK(accepted == 256);
+  CHECK(navigator.count(Verdict::kOverflow) == 44);
+}
+
+// Known to fail, 2026-11-24: the NIS of a refused fix counts whole in the mean by which the filter
+// follows a receiver's drift, and widens P to 257 m. The one after it, 300 m off, is fused.
+TEST_CASE("one outlier does not open the gate to the next" * doctest::should_fail()) {
+  Navigator navigator = started();
+  run(navigator, 0.0, 40.4);
+  const double sigma_m = horizontal_sigma_m(navigator);
+  const auto wrong_by = [](double t_s, double off_m) {
+    GnssFix fix = recording().fixes[40];
+    fix.time = time_from_seconds(t_s);
+    fix.position->r_e_m = sim::truth_at(trajectory(), t_s).nav.r_e_m;
+    fix.position->r_e_m.z() += off_m;
+    fix.velocity.reset();
+    return fix;
+  };
+  CHECK(navigator.push(wrong_by(40.1, 1000.0)) == Verdict::kGated);
+  CHECK(horizontal_sigma_m(navigator) < 1.5 * sigma_m);
+  CHECK(navigator.push(wrong_by(40.3, 300.0)) == Verdict::kGated);
+  CHECK(horizontal_error_m(navigator) < 10.0);
+}
+
+// Known to fail, 2026-11-24: after the end of the week no sample is later than the one before it.
+TEST_CASE("samples over the end of a GPS week go on as without one" * doctest::should_fail()) {
+  constexpr double kWeekS = 604800.0;
+  const auto drive = [](double begin_s, bool wraps) {
+    Navigator navigator{NavigatorConfig{}};
+    const auto time = [&](double t_s) {
+      const double at_s = begin_s + t_s;
+      return time_from_seconds(wraps && at_s >= kWeekS ? at_s - kWeekS : at_s);
+    };
+    std::size_t next = 0;
+    for (int k = 0; k <= 2000; ++k) {
+      const double t_s = 0.01 * k;
+      const sim::TruthPoint truth = sim::truth_at(trajectory(), t_s);
+      for (; next < 60 && to_seconds(recording().fixes[next].time) <= t_s; ++next) {
+        GnssFix fix = recording().fixes[next];
+        fix.time = time(to_seconds(fix.time));
+        navigator.push(fix);
+      }
+      navigator.push(ImuSample{time(t_s), truth.omega_ib_b_radps, truth.f_ib_b_mps2});
+    }
+    return navigator;
+  };
+  const Navigator wrapped = drive(kWeekS - 10.0, true);
+  const Navigator counted = drive(kWeekS - 10.0, false);
+  REQUIRE(counted.aligned());
+  REQUIRE(wrapped.aligned());
+  CHECK(same_bits(wrapped, counted));
+  CHECK(wrapped.count(Verdict::kFused) == counted.count(Verdict::kFused));
 }
 
 TEST_CASE("a fix acts at its own time: on a sample, between two, several within one") {
@@ -284,16 +341,19 @@ TEST_CASE("no IMU data for a while: a gap is bridged, sigmas grow, the filter re
         return (nav.r_e_m - sim::truth_at(c.trajectory, to_seconds(nav.time)).nav.r_e_m).norm();
       };
       std::size_t next = 0;
+      const Time begin = time_from_seconds(30.0);
+      const Time end = begin + duration_from_seconds(c.gap_s);
       for (const ImuIncrement& inc : log.imu) {
-        const double t_s = to_seconds(inc.time);
-        if (t_s > 30.0 && t_s < 30.0 + c.gap_s) continue;
+        if (inc.time > begin && inc.time < end) continue;
         const double sigma_before_m = horizontal_sigma_m(navigator);
         // The receiver is down as well; a fix that waited is tried in the next case.
         for (; next < log.fixes.size() && log.fixes[next].time <= inc.time; ++next) {
-          if (t_s != 30.0 + c.gap_s) navigator.push(log.fixes[next]);
+          if (inc.time != end) navigator.push(log.fixes[next]);
         }
+        // The time of the first record after the hole may be wrong: the second confirms it.
         const Verdict verdict = navigator.push(inc);
-        CHECK((verdict == Verdict::kGap) == (t_s == 30.0 + c.gap_s));
+        CHECK((verdict == Verdict::kFuture) == (inc.time == end));
+        CHECK((verdict == Verdict::kGap) == (inc.time == end + duration_from_seconds(0.01)));
         if (verdict != Verdict::kGap) continue;
         CHECK(horizontal_sigma_m(navigator) > 3.0 * sigma_before_m);
         CHECK(error_m() < 3.0 * horizontal_sigma_m(navigator));
@@ -310,8 +370,8 @@ TEST_CASE("fixes that wait through a gap act at their own times") {
   Navigator navigator = started();
   run(navigator, 0.0, 30.0);
   for (std::size_t k = 30; k < 35; ++k) navigator.push(recording().fixes[k]);
-  navigator.push(recording().imu[3499]);
-  CHECK(navigator.count(Verdict::kGap) == 1);
+  CHECK(navigator.push(recording().imu[3498]) == Verdict::kFuture);
+  CHECK(navigator.push(recording().imu[3499]) == Verdict::kGap);
   CHECK(navigator.count(Verdict::kFused) + navigator.count(Verdict::kGated) == 35);
   CHECK(horizontal_error_m(navigator) < 10.0);  // the last fix is half a second old
 }
@@ -415,9 +475,12 @@ TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted") 
       if (random.uniform() < 0.01) x = specials[static_cast<int>(10.0 * random.uniform())];
       if (random.uniform() < 0.01) x *= std::exp(20.0 * random.normal());
     };
-    Navigator navigator = seed % 2 == 0 ? started() : Navigator{NavigatorConfig{}};
+    NavigatorConfig config;
+    if (seed > 5) config.vehicle = VehicleConfig::car();
+    Navigator navigator = seed % 2 == 0 ? started(config) : Navigator{config};
     Time now{};
     std::uint64_t inputs = 0;
+    bool was_aligned = false;
     for (int k = 0; k < 10'000; ++k) {
       now += duration_from_seconds(random.uniform() < 0.001 ? 3.0 * random.uniform() : 0.01);
       const Time jittered =
@@ -432,6 +495,16 @@ TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted") 
         if (random.uniform() < 0.1) fix.position.reset();
         if (random.uniform() < 0.1) fix.velocity.reset();
         navigator.push(fix);
+      } else if (random.uniform() < 0.05) {
+        OdometerSpeed odometer{jittered, 20.0, 0.1};
+        damage(odometer.speed_mps);
+        damage(odometer.sigma_mps);
+        navigator.push(odometer);
+      } else if (random.uniform() < 0.05) {
+        BarometricHeight barometer{jittered, 100.0, 0.5};
+        damage(barometer.height_m);
+        damage(barometer.sigma_m);
+        navigator.push(barometer);
       } else {
         ImuIncrement inc = recording().imu[static_cast<std::size_t>(k) % 6000];
         inc.time = jittered;
@@ -441,11 +514,12 @@ TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted") 
         navigator.push(inc);
       }
       ++inputs;
+      was_aligned = was_aligned || navigator.aligned();
       if (navigator.aligned() && k % 10 == 0) REQUIRE(all_finite(navigator.solution()));
     }
-    CHECK(navigator.aligned());
+    CHECK(was_aligned);
     CHECK(total(navigator) <= inputs);
-    CHECK(total(navigator) + 16 >= inputs);  // up to 16 fixes wait for their verdict
+    CHECK(total(navigator) + 256 >= inputs);  // up to 256 fixes wait for their verdict
     CHECK(navigator.count(Verdict::kFused) > 0);
   }
 }

@@ -2,6 +2,7 @@
 // assertions on: whatever Eigen would allocate aborts it. operator new is counted besides.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -129,6 +130,53 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
     CHECK(s.nav.time == log.imu.back().time);
     CHECK(navigator.count(Verdict::kFused) > 10);
     CHECK(navigator.count(Verdict::kGap) == 1);
+  }
+  SUBCASE("push: late fixes, odometer, barometer, an unknown mount, gaps, a reset") {
+    NavigatorConfig navigator_config;
+    navigator_config.vehicle = VehicleConfig::car();
+    navigator_config.timing.velocity_lag_s = 0.1;  // every fix is cut in two
+    bool is_known = false;
+    SUBCASE("the mount is known") { is_known = true; }
+    SUBCASE("the mount is not known") {}
+    if (!is_known) navigator_config.C_bs.reset();
+    Navigator navigator(navigator_config);
+    const NoMalloc guard;
+    std::size_t next = 0;
+    std::uint64_t resets = 0;
+    for (std::size_t k = 0; k < log.imu.size(); ++k) {
+      if (k > 1000 && k < 1100) continue;
+      const Time t = log.imu[k].time;
+      // 0.8 s late; from 16 s on 300 m off, twice a second and more.
+      const Time due = t - duration_from_seconds(0.8);
+      for (; next < log.fixes.size() && log.fixes[next].time <= due; ++next) {
+        navigator.push(log.fixes[next]);
+        navigator.push(log.fixes[next]);
+      }
+      if (k % 10 == 0) {
+        navigator.push(OdometerSpeed{t - duration_from_seconds(0.013), 20.0, 0.1});
+        navigator.push(BarometricHeight{t - duration_from_seconds(0.017), 100.0, 0.5});
+      }
+      if (k > 1600 && k % 10 == 5) {
+        GnssFix wrong = log.fixes[10];
+        wrong.time = t;
+        wrong.position->r_e_m += Eigen::Vector3d(300.0, 0.0, 0.0);
+        navigator.push(wrong);
+      }
+      navigator.push(log.imu[k]);
+      resets = navigator.health().resets;
+    }
+    const std::uint64_t fused = navigator.count(Verdict::kFused);
+    for (std::size_t k = 0; k < 200; ++k) {
+      ImuIncrement inc = log.imu[k];
+      inc.time += duration_from_seconds(1e5);
+      navigator.push(inc);
+    }
+    CHECK(guard.count() == 0);
+    CHECK(navigator.count(Verdict::kClockJump) == 1);
+    CHECK(fused > 0);
+    CHECK(navigator.count(Verdict::kDuplicate) > 0);
+    CHECK(navigator.count(Verdict::kGap) == 1);
+    CHECK(resets > 0);
   }
 }
 
