@@ -117,7 +117,10 @@ void Fusion::align(const GnssFix& fix) {
 Verdict Fusion::settle(const GnssFix& fix) {
   using Outcome = UpdateReport::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
-  if (bank_->collapsed()) {
+  // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
+  // distance is not one that the estimate has drifted.
+  const bool outlier = last_update_.outcome == Outcome::kGated && gated_in_a_row_ == 0;
+  if (bank_->collapsed() && !outlier) {
     if (fix.position) {
       position_noise_.note(fix.time, last_update_.position_innovation_e_m, fix.position->R_e_m2,
                            last_update_.position_nis);
