@@ -57,6 +57,39 @@ void validate(const Estimate& estimate, const ErrorMatrix& P) {
   }
 }
 
+/// The directions of the error state that an update leaves alone, as columns; zero for none.
+using HeldDirections = Eigen::Matrix<double, kErrorStates, 2>;
+
+HeldDirections directions_of(Held held, const Estimate& estimate) {
+  HeldDirections U = HeldDirections::Zero();
+  if (held == Held::kNothing) return U;
+  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).col(2);
+  U.col(0).segment<3>(kPsi) = down_e;
+  if (held == Held::kHeadingAndTurn) {
+    U.col(1).segment<3>(kBg) = estimate.nav.q_eb.conjugate() * down_e;
+  }
+  return U;
+}
+
+/// scalar_update() with a gain that has nothing along U. By Joseph's form with that gain, P is the
+/// one of the full update and s d d^T, s the innovation's variance and d the gain left out.
+template <class Matrix, class Vector>
+void held_scalar_update(Matrix& P, Vector& x, const Vector& h, double z, const HeldDirections& U) {
+  if (U.isZero(0.0)) {
+    scalar_update(P, x, h, z);
+    return;
+  }
+  const Vector Ph = P * h;
+  const double s = h.dot(Ph) + 1.0;
+  Vector left_out = Vector::Zero();
+  left_out.template head<kErrorStates>() =
+      U * (U.transpose() * Ph.template head<kErrorStates>()) / s;
+  const double innovation = z - h.dot(x);
+  scalar_update(P, x, h, z);
+  x -= innovation * left_out;
+  P += s * left_out * left_out.transpose();
+}
+
 double nis_of(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& S) {
   return innovation.dot(S.llt().solve(innovation));
 }
@@ -154,7 +187,8 @@ UpdateReport Ekf::judge(const Measurement& m) {
   return report;
 }
 
-void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights) {
+void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights, Held held) {
+  const HeldDirections U = directions_of(held, estimate_);
   // Whitened by the Cholesky factor of R, the components are independent, of unit variance.
   const Eigen::LLT<decltype(m.R)> R_llt(m.R);
   const auto white_H = R_llt.matrixL().solve(m.H).eval();
@@ -168,7 +202,9 @@ void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights)
     for (int i = 0; i < m.rows(); ++i) {
       JointVector h;
       h << white_H.row(i).transpose(), white_H_vehicle.row(i).transpose();
-      scalar_update(P, x_joint, weights(i) * h, weights(i) * white_z(i));
+      h *= weights(i);
+      const double z = weights(i) * white_z(i);
+      held_scalar_update(P, x_joint, h, z, U);
     }
     P_ = P.topLeftCorner<kErrorStates, kErrorStates>();
     vehicle_.cross = P.topRightCorner<kErrorStates, kVehicleStates>();
@@ -177,7 +213,9 @@ void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights)
     x_hat = x_joint.head<kErrorStates>();
   } else {
     for (int i = 0; i < m.rows(); ++i) {
-      scalar_update(P_, x_hat, weights(i) * white_H.row(i).transpose(), weights(i) * white_z(i));
+      const ErrorVector h = weights(i) * white_H.row(i).transpose();
+      const double z = weights(i) * white_z(i);
+      held_scalar_update(P_, x_hat, h, z, U);
     }
   }
   inject(estimate_, x_hat);
@@ -210,18 +248,31 @@ UpdateReport Ekf::update(const GnssFix& fix, const FixTrust& trust) {
   if (fix.position) report.position_innovation_e_m = m.innovation.head<3>();
   if (fix.velocity) report.velocity_innovation_e_mps = m.innovation.tail<3>();
   if (report.outcome != UpdateReport::Outcome::kFused) return report;
-  fuse(m, weights);
+  fuse(m, weights, trust.held);
   if (fix.position) last_position_fix_ = fix.time;
   report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
   return report;
 }
 
-UpdateReport Ekf::update(const Measurement& m) {
+UpdateReport Ekf::update(const Measurement& m, Held held) {
   UpdateReport report = judge(m);
   if (report.outcome != UpdateReport::Outcome::kFused) return report;
-  fuse(m, Eigen::Matrix<double, 6, 1>::Ones());
+  fuse(m, Eigen::Matrix<double, 6, 1>::Ones(), held);
   report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
   return report;
+}
+
+double Ekf::heading_sigma_rad() const {
+  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate_.nav.r_e_m)).col(2);
+  return std::sqrt(std::max(0.0, down_e.dot(P_.block<3, 3>(kPsi, kPsi) * down_e)));
+}
+
+bool Ekf::rest_hides_heading() const {
+  const TriadErrorModel& gyro = config_.imu.gyro;
+  const double bias_radps = std::hypot(gyro.bias_sigma, gyro.in_run.sigma);
+  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate_.nav.r_e_m)).col(2);
+  const double level_rate_radps = earth_rotation_e_radps().cross(down_e).norm();
+  return bias_radps > level_rate_radps * heading_sigma_rad();
 }
 
 void Ekf::estimate_vehicle(const VehicleState& vehicle) {

@@ -28,6 +28,15 @@ EkfConfig filter_of(const NavigatorConfig& config) {
   return filter;
 }
 
+/// Several headings about the one of the estimate.
+HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
+                        double sigma_rad) {
+  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).col(2);
+  ErrorMatrix across = ErrorMatrix::Identity();
+  across.block<3, 3>(kPsi, kPsi) -= down_e * down_e.transpose();
+  return HeadingBank(config, estimate, across * P * across.transpose(), down_e, sigma_rad);
+}
+
 ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
   ImuIncrement result = inc;
   result.dtheta_b_rad = C_bs * inc.dtheta_b_rad;
@@ -57,10 +66,7 @@ void Fusion::start(const Estimate& estimate, const ErrorMatrix& P) {
   if (!(sigma_rad > HeadingBank::kOneFilterRad)) {
     return begin(HeadingBank(Ekf(filter_of(config_), estimate, P)));
   }
-  ErrorMatrix across = ErrorMatrix::Identity();
-  across.block<3, 3>(kPsi, kPsi) -= down_e * down_e.transpose();
-  begin(HeadingBank(filter_of(config_), estimate, across * P * across.transpose(), down_e,
-                    sigma_rad));
+  begin(bank_around(filter_of(config_), estimate, P, sigma_rad));
 }
 
 void Fusion::begin(const HeadingBank& bank) {
@@ -88,8 +94,27 @@ void Fusion::integrate(const ImuIncrement& inc) {
   const ImuIncrement in_body = C_bs_ ? turned(inc, *C_bs_) : inc;
   if (!bank_) return aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
+  const bool rested = aiding_.at_rest();
   aiding_.push(in_body, *bank_);
+  if (rested && !aiding_.at_rest()) open_heading();
   guard_numbers();
+}
+
+void Fusion::open_heading() {
+  if (!bank_->collapsed()) return;
+  const Ekf& filter = bank_->best();
+  const double sigma_rad = filter.heading_sigma_rad();
+  const ErrorMatrix P = filter.covariance();
+  if (!(sigma_rad > HeadingBank::kOneFilterRad) || !filter.is_sane() ||
+      !(P.diagonal().minCoeff() > 0.0)) {
+    return;
+  }
+  VehicleState vehicle = filter.vehicle();
+  vehicle.cross.setZero();
+  const bool estimates_vehicle = filter.estimates_vehicle();
+  bank_ = bank_around(filter.config(), filter.estimate(), P, sigma_rad);
+  if (!estimates_vehicle) return;
+  bank_->for_each([&](Ekf& member) { member.estimate_vehicle(vehicle); });
 }
 
 void Fusion::bridge(Time to) {
@@ -106,8 +131,11 @@ Verdict Fusion::fuse(const GnssFix& fix) {
     align(fix);
     return Verdict::kAligning;
   }
-  const FixTrust trust{position_noise_.sigma_scale(), velocity_noise_.sigma_scale()};
-  last_update_ = bank_->update([&](Ekf& filter) { return filter.update(fix, trust); });
+  last_update_ = bank_->update([&](Ekf& filter) {
+    const bool hides = aiding_.at_rest() && filter.rest_hides_heading();
+    return filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
+                               hides ? Held::kHeadingAndTurn : Held::kNothing});
+  });
   const Verdict verdict = settle(fix);
   if (bank_) guard_numbers();
   if (bank_) watch_covariance();
@@ -125,7 +153,10 @@ void Fusion::align(const GnssFix& fix) {
 Verdict Fusion::settle(const GnssFix& fix) {
   using Outcome = UpdateReport::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
-  if (bank_->collapsed()) {
+  // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
+  // distance is not one that the estimate has drifted.
+  const bool outlier = last_update_.outcome == Outcome::kGated && gated_in_a_row_ == 0;
+  if (bank_->collapsed() && !outlier) {
     if (fix.position) {
       position_noise_.note(fix.time, last_update_.position_innovation_e_m, fix.position->R_e_m2,
                            last_update_.position_nis);

@@ -34,7 +34,14 @@ void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Ma
   const double ratio = change.dot(R.llt().solve(change)) / expected;
   average(change_ratio_, change_count_, std::min(ratio, kLargestRatio));
   if (static_cast<double>(change_count_) < kWindow) return;
-  if (change_ratio_ > kBandLow && change_ratio_ < kBandHigh) return;
+  const auto in_band = [](double r) { return r > kBandLow && r < kBandHigh; };
+  // A claim that would do by itself is left alone again: what a hole or a jump has taught is
+  // forgotten in about a window.
+  if (in_band(change_ratio_ * sigma_scale_ * sigma_scale_)) {
+    sigma_scale_ = std::pow(sigma_scale_, 1.0 - 1.0 / kWindow);
+    return;
+  }
+  if (in_band(change_ratio_)) return;
   // Towards the scale at which the mean is 1, in about a window.
   const double step = 0.5 * (std::min(change_ratio_, 2.0) - 1.0) / kWindow;
   sigma_scale_ = std::clamp(sigma_scale_ * std::exp(step), smallest_, kLargestScale);

@@ -88,7 +88,8 @@ void VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
 void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
   if (config_.zero_velocity) {
     bank.update([this](Ekf& filter) {
-      return filter.update(zero_velocity(filter.estimate(), config_.rest_sigma_mps));
+      return filter.update(zero_velocity(filter.estimate(), config_.rest_sigma_mps),
+                           filter.rest_hides_heading() ? Held::kHeadingAndTurn : Held::kNothing);
     });
   }
   if (config_.zero_angular_rate) {
@@ -96,7 +97,8 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
     const double sigma = std::hypot(noise, config_.rest_turn_sigma_radps);
     bank.update([&](Ekf& filter) {
       return filter.update(
-          zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma));
+          zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma),
+          filter.rest_hides_heading() ? Held::kHeading : Held::kNothing);
     });
   }
 }

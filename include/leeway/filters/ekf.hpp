@@ -61,11 +61,21 @@ struct UpdateReport {
   bool covariance_positive{true};  ///< no diagonal element and no innovation variance <= 0
 };
 
+/// What an update leaves as it is, estimate and variance, while its uncertainty counts: a Schmidt
+/// update. At rest a linearized filter takes the noise of its own estimate for motion, and that for
+/// knowledge of the heading.
+enum class Held {
+  kNothing,
+  kHeading,
+  kHeadingAndTurn,  ///< and the gyro bias about the vertical
+};
+
 /// What the monitor of a receiver makes of its claims: factors on the standard deviations of
-/// position and velocity.
+/// position and velocity; and what its fixes cannot tell.
 struct FixTrust {
   double position_sigma_scale{1.0};
   double velocity_sigma_scale{1.0};
+  Held held{Held::kNothing};
 };
 
 /// Owns the estimate, its covariance and the transition since it was last propagated. predict,
@@ -91,7 +101,14 @@ class Ekf {
   UpdateReport update(const GnssFix& fix, const FixTrust& trust = {});
 
   /// The same for any measurement at the time of the estimate. @pre m.R is positive definite.
-  UpdateReport update(const Measurement& m);
+  UpdateReport update(const Measurement& m, Held held = Held::kNothing);
+
+  /// Whether a standstill cannot tell the heading better than it is known: the rate of the Earth
+  /// that would tell it is hidden in the gyro's bias.
+  bool rest_hides_heading() const;
+
+  /// 1 sigma of the attitude error about the vertical.
+  double heading_sigma_rad() const;
 
   const Estimate& estimate() const { return estimate_; }
 
@@ -151,7 +168,7 @@ class Ekf {
   void flush();
   double position_weight(Time t) const;
   UpdateReport judge(const Measurement& m);
-  void fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights);
+  void fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights, Held held);
 
   EkfConfig config_;
   ProcessNoise noise_;

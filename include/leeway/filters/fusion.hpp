@@ -76,6 +76,7 @@ class Fusion {
   void begin(const HeadingBank& bank);
   void begin_vehicle();
   void find_mount();
+  void open_heading();
   Verdict settle(const GnssFix& fix);
   void follow_drift();
   Verdict locked_out(const GnssFix& fix);
