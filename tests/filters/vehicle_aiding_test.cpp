@@ -48,15 +48,31 @@ TEST_CASE("a minute without fixes: that it is a car takes off most of the drift,
   plain.vehicle = VehicleConfig{};
   const double without_m = outage_rms_m(plain, 60.0, false);
   const double as_car_m = outage_rms_m(car_config(), 60.0, false);
-  MESSAGE("after 60 s: " << without_m << " m, as a car " << as_car_m << " m");
+  const double wheels_m = outage_rms_m(car_config(), 60.0, true, {.odometer_scale = 0.02});
+  MESSAGE("after 60 s: " << without_m << " m, as a car " << as_car_m
+                         << " m, with an odometer that reads 2 % too much " << wheels_m << " m");
   CHECK(as_car_m < 0.3 * without_m);
-  const double long_m = outage_rms_m(car_config(), 115.0, false);
-  const double wheels_m = outage_rms_m(car_config(), 115.0, true, {.odometer_scale = 0.02});
-  MESSAGE("as a car, after 115 s: " << long_m << " m, with an odometer that reads 2 % too much "
-                                    << wheels_m << " m");
-  // 2 % of 1 km, not found, were 20 m.
-  CHECK(wheels_m < long_m);
-  CHECK(wheels_m < 4.0);
+  CHECK(wheels_m < 0.75 * as_car_m);
+  // 2 % of 1.3 km, not found, were 26 m.
+  CHECK(outage_rms_m(car_config(), 115.0, true, {.odometer_scale = 0.02}) < 4.0);
+}
+
+// Known to fail, 2026-11-24: it slows down evenly to a stop, 75 s into the outage. Three sigma of
+// the velocity have grown to 1.3 m/s by then, so it is taken for resting at 1.5 m/s already.
+TEST_CASE("a car that rolls to a stop unseen rests when it does" * doctest::should_fail()) {
+  int too_early = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Navigator navigator = test::started_car(car_config());
+    run(navigator, test::drive({}, seed), 415.0, {.gnss_until_s = 300.0},
+        [&](const ImuIncrement& inc) {
+          if (!navigator.health().at_rest) return;
+          const double t_s = to_seconds(inc.time);
+          // One block is as long as half a second, and the rest is told of the two before.
+          const double speed_mps = sim::truth_at(test::stop_and_go(), t_s).nav.v_e_mps.norm();
+          too_early += speed_mps > 0.6;
+        });
+  }
+  CHECK(too_early == 0);
 }
 
 TEST_CASE("a mount 2 deg off is found within three sigma, over seeds 1 to 20") {
