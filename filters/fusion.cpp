@@ -179,7 +179,7 @@ void Fusion::follow_drift() {
   // other, are believed at last: a receiver that settles, or one that was wrong before.
   constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
   constexpr double kShare = 0.1;       // of the squared distance, at each fix
-  if (position_noise_.nis_ratio() < kDriftRatio) return;
+  if (!position_noise_.has_full_window() || position_noise_.nis_ratio() < kDriftRatio) return;
   bank_->best().widen_position(kShare / 3.0 * last_update_.position_innovation_e_m.squaredNorm());
 }
 

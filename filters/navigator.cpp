@@ -103,7 +103,7 @@ Verdict Navigator::counted(Verdict verdict) {
   return verdict;
 }
 
-Verdict Navigator::push(const ImuIncrement& inc) { return counted(take(inc)); }
+Verdict Navigator::push(const ImuIncrement& inc) { return counted(take(inc, inc.time)); }
 
 Verdict Navigator::push(const ImuSample& sample) {
   if (!sample.omega_ib_b_radps.allFinite() || !sample.f_ib_b_mps2.allFinite()) {
@@ -113,17 +113,20 @@ Verdict Navigator::push(const ImuSample& sample) {
       sample.f_ib_b_mps2.norm() > config_.max_force_mps2 || !is_possible(sample.time)) {
     return counted(Verdict::kImplausible);
   }
+  ImuSample on_line = sample;
+  on_line.time = clock_.counted_on(sample.time);
   const std::optional<ImuSample> before = sample_;
-  if (before && sample.time > before->time) {
-    const Verdict verdict = counted(take(increment_between(*before, sample, config_.rate_meaning)));
+  if (before && on_line.time > before->time) {
+    const ImuIncrement inc = increment_between(*before, on_line, config_.rate_meaning);
+    const Verdict verdict = take(inc, sample.time);
     const bool doubted = verdict == Verdict::kFuture || verdict == Verdict::kOutOfOrder;
-    if (!doubted) sample_ = sample;
-    return verdict;
+    if (!doubted) sample_ = on_line;
+    return counted(verdict);
   }
-  if (before && sample.time == before->time) return counted(Verdict::kDuplicate);
+  if (before && on_line.time == before->time) return counted(Verdict::kDuplicate);
   // The first sample only starts the clock, and so does one on another time line.
   const Verdict verdict = before ? clock_.judge(sample.time) : Verdict::kAligning;
-  if (!before || verdict == Verdict::kClockJump) sample_ = sample;
+  if (!before || verdict == Verdict::kClockJump) sample_ = on_line;
   return counted(verdict);
 }
 
@@ -138,12 +141,12 @@ Verdict Navigator::judge(const ImuIncrement& inc) const {
   return Verdict::kAccepted;
 }
 
-Verdict Navigator::take(const ImuIncrement& inc) {
+Verdict Navigator::take(const ImuIncrement& inc, Time as_told) {
   if (const Verdict verdict = judge(inc); verdict != Verdict::kAccepted) return verdict;
   const std::optional<Time> before = clock_.newest();
-  const Verdict verdict = clock_.judge(inc.time);
+  const Verdict verdict = clock_.judge(as_told);
   Step step{inc};
-  step.inc.time = clock_.counted_on(inc.time);
+  step.inc.time = clock_.counted_on(as_told);
   if (verdict == Verdict::kClockJump) history_.restart(Fusion(config_), step.inc.time);
   if (verdict != Verdict::kAccepted) return verdict;
 

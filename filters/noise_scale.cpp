@@ -7,7 +7,6 @@
 namespace leeway {
 namespace {
 
-constexpr double kWindow = 30.0;
 constexpr double kLargestRatio = 4.0;  // of one fix: a single outlier is the gate's business
 constexpr double kBandLow = 0.5;       // 90 degrees of freedom stay within with 99.99 %
 constexpr double kBandHigh = 1.6;
@@ -17,14 +16,14 @@ constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's o
 /// Exponential mean that starts as the plain one.
 void average(double& mean, std::int64_t& count, double value) {
   ++count;
-  mean += (value - mean) / std::min(static_cast<double>(count), kWindow);
+  mean += (value - mean) / static_cast<double>(std::min<std::int64_t>(count, NoiseScale::kWindow));
 }
 
 }  // namespace
 
 void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                       double nis) {
-  average(nis_ratio_, nis_count_, nis / 3.0);
+  average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestRatio));
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;
   previous_ = t;
@@ -33,7 +32,7 @@ void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Ma
   const double expected = 2.0 * 3.0 * sigma_scale_ * sigma_scale_;
   const double ratio = change.dot(R.llt().solve(change)) / expected;
   average(change_ratio_, change_count_, std::min(ratio, kLargestRatio));
-  if (static_cast<double>(change_count_) < kWindow) return;
+  if (change_count_ < kWindow) return;
   const auto in_band = [](double r) { return r > kBandLow && r < kBandHigh; };
   // A claim that would do by itself is left alone again: what a hole or a jump has taught is
   // forgotten in about a window.

@@ -50,11 +50,15 @@ StandstillDetector::StandstillDetector(const StandstillConfig& config, const Imu
   require_positive(config.gyro_std_radps, "gyro_std_radps");
   require_positive(config.force_std_mps2, "force_std_mps2");
   require_positive(config.turn_radps, "turn_radps");
+  require_positive(config.change_mps, "change_mps");
   require_positive(config.speed_mps, "speed_mps");
 }
 
 bool StandstillDetector::push(const ImuBlock& block, const Ekf& filter) {
-  const bool still = looks_still(block, filter);
+  // An even slowdown is as quiet as a rest.
+  const Eigen::Vector3d change = filter.estimate().nav.v_e_mps - v_e_mps_;
+  v_e_mps_ = filter.estimate().nav.v_e_mps;
+  const bool still = change.norm() < config_.change_mps && looks_still(block, filter);
   const bool at_rest = still && was_still_;
   was_still_ = still;
   return at_rest;

@@ -96,9 +96,8 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
     const double noise = gyro_noise_rad_per_sqrt_s_ / std::sqrt(block.dt_s);
     const double sigma = std::hypot(noise, config_.rest_turn_sigma_radps);
     bank.update([&](Ekf& filter) {
-      return filter.update(
-          zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma),
-          filter.rest_hides_heading() ? Held::kHeading : Held::kNothing);
+      return filter.update(zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma),
+                           filter.rest_hides_heading() ? Held::kHeading : Held::kNothing);
     });
   }
 }

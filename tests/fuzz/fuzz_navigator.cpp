@@ -34,7 +34,7 @@ class Choices {
   double number(double middle, double scale) {
     constexpr double kInf = std::numeric_limits<double>::infinity();
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    constexpr double kWild[] = {kNan, kInf, -kInf,  0.0,   -0.0,   1e308, -1e308, 1e-308,
+    constexpr double kWild[] = {kNan, kInf, -kInf, 0.0,   -0.0,   1e308, -1e308, 1e-308,
                                 1e30, 1e15, -1e15, 1e100, -1e100, 1e-30, 1e5,    -1.0};
     const std::uint8_t kind = byte();
     if (kind >= 240) return kWild[kind - 240];
@@ -194,8 +194,8 @@ class Drive {
     truth_.time = now_;
     estimate.nav = nav_state_from_ned(truth_);
     const double heading_rad = choices_.byte() / 64.0;
-    navigator_.start(estimate, initial_covariance(estimate, {0.01, heading_rad, 0.1, 3.0},
-                                                  config_.filter.imu));
+    navigator_.start(
+        estimate, initial_covariance(estimate, {0.01, heading_rad, 0.1, 3.0}, config_.filter.imu));
   }
 
   void restore() {
@@ -221,7 +221,8 @@ class Drive {
   /// verdicts than inputs.
   void check() const {
     std::uint64_t verdicts = 0;
-    for (std::size_t k = 0; k < kVerdicts; ++k) verdicts += navigator_.count(static_cast<Verdict>(k));
+    for (std::size_t k = 0; k < kVerdicts; ++k)
+      verdicts += navigator_.count(static_cast<Verdict>(k));
     require(verdicts <= pushed_);
     const Health health = navigator_.health();
     require(std::isfinite(health.coasting_s) && std::isfinite(health.gating_s));

@@ -1,7 +1,7 @@
-/// A long drive with everything that goes wrong on one: late, doubled and overtaken fixes, outliers,
-/// holes in the IMU data, IMU records twice and out of order, restarts. Prints a row for each hour.
-/// Exits with 1, and says why, when the navigator is not finite, not consistent, its covariance not
-/// positive definite, or its memory grows.
+/// A long drive with everything that goes wrong on one: late, doubled and overtaken fixes,
+/// outliers, holes in the IMU data, IMU records twice and out of order, restarts. Prints a row for
+/// each hour. Exits with 1, and says why, when the navigator is not finite, not consistent, its
+/// covariance not positive definite, or its memory grows.
 ///
 /// usage: leeway_soak [HOURS [SEED]]
 #include <unistd.h>
@@ -36,11 +36,11 @@ constexpr double kVelocitySigmaMps = 0.05;
 constexpr double kSettlingS = 60.0;  // after the start and after a hole
 constexpr double kLargestGrowthMB = 1.0;
 
-constexpr double kDuplicates = 0.02;           // of fixes
-constexpr double kOutliers = 0.01;             // of fixes
-constexpr double kImuDuplicates = 1e-3;        // of records
-constexpr double kImuOutOfOrder = 1e-3;        // of records
-constexpr double kHoleEveryS = 600.0;          // on average
+constexpr double kDuplicates = 0.02;            // of fixes
+constexpr double kOutliers = 0.01;              // of fixes
+constexpr double kImuDuplicates = 1e-3;         // of records
+constexpr double kImuOutOfOrder = 1e-3;         // of records
+constexpr double kHoleEveryS = 600.0;           // on average
 constexpr double kRestartEveryS = 20.0 * 60.0;  // on average
 
 struct Failure {
@@ -87,8 +87,8 @@ struct Consistency {
 
 struct Hour {
   Consistency nis{};
-  double error_square_m2{0.0};       // horizontal
-  double normalized_square{0.0};     // of north and east, by their sigmas
+  double error_square_m2{0.0};    // horizontal
+  double normalized_square{0.0};  // of north and east, by their sigmas
   int seconds{0};
   int holes{0};
   int outliers{0};
@@ -271,10 +271,11 @@ class Soak {
     const auto gated = since_hour_before(Verdict::kGated);
     const auto late = since_hour_before(Verdict::kLate);
     const auto duplicate = since_hour_before(Verdict::kDuplicate);
-    std::printf("\r%6.2f %7lu %6lu %8d %5lu %6lu %5d %8d  %.4f %.3f-%.3f %9.2f %9.3f %7u %6u %7.2f\n",
-                hour, fused, gated, hour_.outliers, late, duplicate, hour_.holes, restarts_,
-                hour_.nis.mean(), 1.0 - band, 1.0 + band, std::sqrt(hour_.error_square_m2 / n),
-                std::sqrt(hour_.normalized_square / n), health.repairs, health.resets, rss_mb);
+    std::printf(
+        "\r%6.2f %7lu %6lu %8d %5lu %6lu %5d %8d  %.4f %.3f-%.3f %9.2f %9.3f %7u %6u %7.2f\n", hour,
+        fused, gated, hour_.outliers, late, duplicate, hour_.holes, restarts_, hour_.nis.mean(),
+        1.0 - band, 1.0 + band, std::sqrt(hour_.error_square_m2 / n),
+        std::sqrt(hour_.normalized_square / n), health.repairs, health.resets, rss_mb);
     std::fflush(stdout);
     if (!(std::abs(hour_.nis.mean() - 1.0) <= 3.2905 * hour_.nis.sigma())) {
       failures_.push_back("hour " + std::to_string(hour) + ": NIS outside its 99.9 % band");

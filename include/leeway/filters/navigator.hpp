@@ -87,7 +87,7 @@ class Navigator {
 
   const Fusion& fusion() const { return history_.fusion(); }
   Verdict counted(Verdict verdict);
-  Verdict take(const ImuIncrement& inc);
+  Verdict take(const ImuIncrement& inc, Time as_told);
   Verdict judge(const ImuIncrement& inc) const;
   Verdict take(const GnssFix& fix);
   Verdict place(const Event& event);

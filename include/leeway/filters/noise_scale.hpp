@@ -17,6 +17,8 @@ namespace leeway {
 /// docs/theory/noise_scale.md.
 class NoiseScale {
  public:
+  static constexpr int kWindow = 30;  ///< fixes
+
   /// @param smallest  how far down a modest claim may be scaled, at most 1. Errors that are alike
   ///                  from fix to fix do not show here, and count.
   explicit NoiseScale(double smallest) : smallest_(smallest) {}
@@ -25,6 +27,9 @@ class NoiseScale {
 
   /// Mean of nis / dof over the last 30 fixes or so, by the scaled claim; 1 before any.
   double nis_ratio() const { return nis_ratio_; }
+
+  /// Whether nis_ratio() is the mean of a full window.
+  bool has_full_window() const { return nis_count_ >= kWindow; }
 
   /// Of three components judged with the present scale, fused or gated.
   /// @param innovation  measured - predicted

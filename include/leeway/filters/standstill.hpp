@@ -17,6 +17,7 @@ struct StandstillConfig {
   double gyro_std_radps{0.002};  ///< largest norm of the standard deviations within a block
   double force_std_mps2{0.06};
   double turn_radps{0.005};  ///< largest mean rate beyond the gyro bias: refuses slow smooth turns
+  double change_mps{0.1};    ///< largest change of the filter's velocity within a block
   double speed_mps{0.3};     ///< largest speed, three sigma of the filter's velocity beyond
 };
 
@@ -65,7 +66,7 @@ class StandstillDetector {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(was_still_);
+    archive(was_still_, v_e_mps_);
   }
 
  private:
@@ -75,6 +76,7 @@ class StandstillDetector {
   double gyro_noise_rad_per_sqrt_s_;
   double force_noise_mps_per_sqrt_s_;
   bool was_still_{false};
+  Eigen::Vector3d v_e_mps_{Eigen::Vector3d::Zero()};  // at the end of the block before
 };
 
 }  // namespace leeway
