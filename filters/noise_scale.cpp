@@ -29,21 +29,17 @@ void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Ma
   previous_ = t;
   previous_innovation_ = innovation;
   if (!in_a_row) return;
-  const double expected = 2.0 * 3.0 * sigma_scale_ * sigma_scale_;
-  const double ratio = change.dot(R.llt().solve(change)) / expected;
-  average(change_ratio_, change_count_, std::min(ratio, kLargestRatio));
+  constexpr double kExpected = 2.0 * 3.0;
+  const double largest = kLargestRatio * sigma_scale_ * sigma_scale_;
+  const double ratio = change.dot(R.llt().solve(change)) / kExpected;
+  average(change_ratio_, change_count_, std::min(ratio, largest));
   if (change_count_ < kWindow) return;
-  const auto in_band = [](double r) { return r > kBandLow && r < kBandHigh; };
-  // A claim that would do by itself is left alone again: what a hole or a jump has taught is
-  // forgotten in about a window.
-  if (in_band(change_ratio_ * sigma_scale_ * sigma_scale_)) {
-    sigma_scale_ = std::pow(sigma_scale_, 1.0 - 1.0 / kWindow);
-    return;
-  }
-  if (in_band(change_ratio_)) return;
-  // Towards the scale at which the mean is 1, in about a window.
-  const double step = 0.5 * (std::min(change_ratio_, 2.0) - 1.0) / kWindow;
-  sigma_scale_ = std::clamp(sigma_scale_ * std::exp(step), smallest_, kLargestScale);
+  // Towards the scale that explains the changes, in about a window; a claim that would do by itself
+  // is left alone.
+  const bool would_do = change_ratio_ > kBandLow && change_ratio_ < kBandHigh;
+  const double wanted = would_do ? 1.0 : std::sqrt(change_ratio_);
+  const double moved = sigma_scale_ * std::pow(wanted / sigma_scale_, 1.0 / kWindow);
+  sigma_scale_ = std::clamp(moved, smallest_, kLargestScale);
 }
 
 }  // namespace leeway

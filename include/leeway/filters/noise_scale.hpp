@@ -46,7 +46,7 @@ class NoiseScale {
   double smallest_;
   double sigma_scale_{1.0};
   double nis_ratio_{1.0};
-  double change_ratio_{1.0};  // of squared changes to their expectation
+  double change_ratio_{1.0};  // of squared changes to what the claim lets expect
   std::int64_t nis_count_{0};
   std::int64_t change_count_{0};
   std::optional<Time> previous_{};
