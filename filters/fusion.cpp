@@ -12,6 +12,9 @@ constexpr std::uint32_t kWidenFrom = 3;  // fixes refused in a row: chance alone
 constexpr std::uint32_t kRestartFrom = 10;
 constexpr double kWidening = 2.0;  // of P, at each of them
 constexpr double kUnknownVelocityMps = 30.0;
+constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
+constexpr std::uint32_t kLockouts = 3;          // so many within so long: widening does not cure it
+constexpr double kLockoutsWithinS = 120.0;
 constexpr double kRelapseS = 60.0;  // locked out again this soon: the attitude is wrong too
 
 AlignmentConfig alignment_of(const NavigatorConfig& config) {
@@ -131,6 +134,7 @@ Verdict Fusion::fuse(const GnssFix& fix) {
     align(fix);
     return Verdict::kAligning;
   }
+  if (bank_->best().heading_sigma_rad() > kOpenRad) open_heading();
   last_update_ = bank_->update([&](Ekf& filter) {
     const bool hides = aiding_.at_rest() && filter.rest_hides_heading();
     return filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
@@ -186,6 +190,11 @@ void Fusion::follow_drift() {
 Verdict Fusion::locked_out(const GnssFix& fix) {
   if (gated_in_a_row_++ == 0) gated_since_ = fix.time;
   if (gated_in_a_row_ < kWidenFrom) return Verdict::kGated;
+  if (gated_in_a_row_ == kWidenFrom && locks_out_again(fix.time)) {
+    ++resets_;
+    realign();
+    return Verdict::kReset;
+  }
   if (gated_in_a_row_ < kRestartFrom) {
     bank_->for_each([](Ekf& filter) { filter.widen(kWidening); });
     return Verdict::kGated;
@@ -200,6 +209,14 @@ Verdict Fusion::locked_out(const GnssFix& fix) {
     restart_motion(fix);
   }
   return Verdict::kReset;
+}
+
+bool Fusion::locks_out_again(Time t) {
+  if (!first_lockout_ || to_seconds(t - *first_lockout_) > kLockoutsWithinS) {
+    first_lockout_ = t;
+    lockouts_ = 0;
+  }
+  return ++lockouts_ >= kLockouts;
 }
 
 void Fusion::restart_motion(const GnssFix& fix) {
@@ -221,6 +238,7 @@ void Fusion::realign() {
   aligner_ = Aligner(alignment_of(config_), filter_of(config_));
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
+  first_lockout_.reset();
   gated_in_a_row_ = 0;
   gated_since_.reset();
 }

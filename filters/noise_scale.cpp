@@ -7,8 +7,9 @@
 namespace leeway {
 namespace {
 
-constexpr double kLargestRatio = 4.0;  // of one fix: a single outlier is the gate's business
-constexpr double kBandLow = 0.5;       // 90 degrees of freedom stay within with 99.99 %
+constexpr double kLargestRatio = 4.0;      // of one fix: a single outlier is the gate's business
+constexpr double kLargestNisRatio = 25.0;  // two outliers in a row shall not count for ever
+constexpr double kBandLow = 0.5;           // 90 degrees of freedom stay within with 99.99 %
 constexpr double kBandHigh = 1.6;
 constexpr double kLargestScale = 10.0;
 constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's own error changes too
@@ -23,7 +24,7 @@ void average(double& mean, std::int64_t& count, double value) {
 
 void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                       double nis) {
-  average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestRatio));
+  average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestNisRatio));
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;
   previous_ = t;

@@ -68,7 +68,7 @@ std::uint32_t fingerprint(NavigatorConfig c) {
   VehicleConfig& v = c.vehicle;
   archive(v.zero_velocity, v.zero_angular_rate, v.non_holonomic, v.odometer, v.barometer,
           v.standstill.gyro_std_radps, v.standstill.force_std_mps2, v.standstill.turn_radps,
-          v.standstill.change_mps, v.standstill.speed_mps, v.rest_sigma_mps,
+          v.standstill.acceleration_mps2, v.standstill.speed_mps, v.rest_sigma_mps,
           v.rest_turn_sigma_radps, v.min_speed_mps, v.right_sigma_mps, v.right_sigma_m,
           v.down_sigma_m2ps2, v.rear_axle_x_m, v.rear_axle_sigma_m, v.mount_sigma_rad,
           v.mount_walk_rad_per_sqrt_s, v.odometer_scale_sigma, v.odometer_walk_per_sqrt_s,

@@ -36,6 +36,7 @@ std::optional<ImuBlock> ImuBlocks::push(const ImuIncrement& inc) {
   block.time = inc.time;
   block.dt_s = dt_s_;
   block.mean_omega_ib_b_radps = omega_sum_ / count_;
+  block.mean_f_ib_b_mps2 = f_sum_ / count_;
   block.gyro_std_radps = spread(omega_sum_, omega_square_sum_, count_);
   block.force_std_mps2 = spread(f_sum_, f_square_sum_, count_);
   block.count = count_;
@@ -50,15 +51,12 @@ StandstillDetector::StandstillDetector(const StandstillConfig& config, const Imu
   require_positive(config.gyro_std_radps, "gyro_std_radps");
   require_positive(config.force_std_mps2, "force_std_mps2");
   require_positive(config.turn_radps, "turn_radps");
-  require_positive(config.change_mps, "change_mps");
+  require_positive(config.acceleration_mps2, "acceleration_mps2");
   require_positive(config.speed_mps, "speed_mps");
 }
 
 bool StandstillDetector::push(const ImuBlock& block, const Ekf& filter) {
-  // An even slowdown is as quiet as a rest.
-  const Eigen::Vector3d change = filter.estimate().nav.v_e_mps - v_e_mps_;
-  v_e_mps_ = filter.estimate().nav.v_e_mps;
-  const bool still = change.norm() < config_.change_mps && looks_still(block, filter);
+  const bool still = looks_still(block, filter);
   const bool at_rest = still && was_still_;
   was_still_ = still;
   return at_rest;
@@ -78,7 +76,15 @@ bool StandstillDetector::looks_still(const ImuBlock& block, const Ekf& filter) c
   const double mean_noise = gyro_noise_rad_per_sqrt_s_ / std::sqrt(block.dt_s);
   const double turn_limit = config_.turn_radps + 3.0 * std::hypot(sigma(kBg), mean_noise);
   const Eigen::Vector3d rate = block.mean_omega_ib_b_radps - filter.estimate().bias.b_g_radps;
-  return rate.norm() < turn_limit &&
+  const NavState& nav = filter.estimate().nav;
+  const Eigen::Vector3d a_e =
+      nav.q_eb * (block.mean_f_ib_b_mps2 - filter.estimate().bias.b_a_mps2) +
+      gravity_e(GravityModel::kNormal, nav.r_e_m);
+  const double tilt_as_force = kStandardGravityMps2 * sigma(kPsi);
+  const double force_noise = force_noise_mps_per_sqrt_s_ / std::sqrt(block.dt_s);
+  const double acceleration_limit =
+      config_.acceleration_mps2 + 2.0 * std::hypot(tilt_as_force, sigma(kBa), force_noise);
+  return rate.norm() < turn_limit && a_e.norm() < acceleration_limit &&
          filter.estimate().nav.v_e_mps.norm() < config_.speed_mps + 3.0 * sigma(kDv);
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("a mount that nobody told is found on the drive, and the heading with 
       const double yaw_error_rad = wrap_pi(ned_from_nav_state(nav).attitude.yaw_rad -
                                            ned_from_nav_state(truth).attitude.yaw_rad);
       // As far as the mount may be off, and the heading itself.
-      CHECK(std::abs(yaw_error_rad) < 4.0 * kRadPerDeg);
+      CHECK(std::abs(yaw_error_rad) < 6.0 * kRadPerDeg);
       CHECK(test::horizontal_error_m(navigator) < 5.0);
       CHECK(navigator.health().resets == 0);
       CHECK(navigator.health().realignments == 0);
@@ -74,7 +74,7 @@ TEST_CASE("a mount that nobody told is found on the drive, and the heading with 
   }
   const double rms_rad = std::sqrt(sum_rad2 / runs);
   MESSAGE("error of the mount, rms of " << runs << " drives: " << rms_rad / kRadPerDeg << " deg");
-  CHECK(rms_rad < 2.0 * kRadPerDeg);
+  CHECK(rms_rad < 3.0 * kRadPerDeg);  // a heading known to 0.1 rad would allow twice that
 }
 
 TEST_CASE("a car that only stands or crawls tells nothing of its mount") {

@@ -61,8 +61,8 @@ class Fusion {
   template <class Archive>
   void visit(Archive& archive) {
     archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
-            last_fused_, gated_since_, last_reset_, gated_in_a_row_, repairs_, resets_,
-            realignments_);
+            last_fused_, gated_since_, last_reset_, first_lockout_, lockouts_, gated_in_a_row_,
+            repairs_, resets_, realignments_);
     const Ekf filter = any_filter();
     bool has_bank = bank_.has_value();
     archive(has_bank);
@@ -81,6 +81,7 @@ class Fusion {
   void follow_drift();
   Verdict locked_out(const GnssFix& fix);
   void realign();
+  bool locks_out_again(Time t);
   void restart_motion(const GnssFix& fix);
   void guard_numbers();
   void watch_covariance();
@@ -98,6 +99,8 @@ class Fusion {
   std::optional<Time> last_fused_{};   // fix
   std::optional<Time> gated_since_{};  // the first of the fixes refused in a row
   std::optional<Time> last_reset_{};
+  std::optional<Time> first_lockout_{};
+  std::uint32_t lockouts_{0};
   std::uint32_t gated_in_a_row_{0};
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};

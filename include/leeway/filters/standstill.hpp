@@ -17,8 +17,10 @@ struct StandstillConfig {
   double gyro_std_radps{0.002};  ///< largest norm of the standard deviations within a block
   double force_std_mps2{0.06};
   double turn_radps{0.005};  ///< largest mean rate beyond the gyro bias: refuses slow smooth turns
-  double change_mps{0.1};    ///< largest change of the filter's velocity within a block
-  double speed_mps{0.3};     ///< largest speed, three sigma of the filter's velocity beyond
+  /// Largest mean acceleration, two sigma of the filter's attitude and bias beyond: an even
+  /// slowdown is as quiet as a rest.
+  double acceleration_mps2{0.2};
+  double speed_mps{0.3};  ///< largest speed, three sigma of the filter's velocity beyond
 };
 
 /// Mean and spread of the IMU over a block of time.
@@ -26,6 +28,7 @@ struct ImuBlock {
   Time time{};  ///< its end
   double dt_s{0.0};
   Eigen::Vector3d mean_omega_ib_b_radps{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d mean_f_ib_b_mps2{Eigen::Vector3d::Zero()};
   double gyro_std_radps{0.0};  ///< norm of the three axes' standard deviations
   double force_std_mps2{0.0};
   int count{0};  ///< increments in it
@@ -66,7 +69,7 @@ class StandstillDetector {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(was_still_, v_e_mps_);
+    archive(was_still_);
   }
 
  private:
@@ -76,7 +79,6 @@ class StandstillDetector {
   double gyro_noise_rad_per_sqrt_s_;
   double force_noise_mps_per_sqrt_s_;
   bool was_still_{false};
-  Eigen::Vector3d v_e_mps_{Eigen::Vector3d::Zero()};  // at the end of the block before
 };
 
 }  // namespace leeway
