@@ -496,4 +496,39 @@ TEST_CASE("heading wrong by 180 deg at the start") {
   });
 }
 
+TEST_CASE("a standstill with a bad gyro: the claimed heading holds") {
+  // Two sigma are 95 % of a Gaussian error: of 20, 1.0 beyond on average, more than 4 in 0.3 %.
+  const ImuErrorModel imu = imu_class_model(ImuClass::kAutomotive, RangeEnd::kMid);
+  const sim::Trajectory rest = sim::static_trajectory({.duration_s = 600.0});
+  const auto truth = sim::true_increments(rest, 50.0, 600.0);
+  int beyond = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const test::Recording log = test::record(rest, truth, imu, {}, 10.0, 10.0, seed);
+    NavigatorConfig config;
+    config.filter.imu = imu;
+    config.filter.gnss_correlation_s = 0.0;
+    config.vehicle = VehicleConfig::car();
+    Navigator navigator(config);
+    Estimate start = test::truth_estimate(rest, 0.0);
+    const ErrorMatrix P = initial_covariance(start, {0.01, 0.175, 0.1, 3.0}, imu);
+    const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(start.nav.r_e_m)).col(2);
+    sim::Random random(seed, 11);
+    start.nav.q_eb = exp_quaternion(0.175 * random.normal() * down_e) * start.nav.q_eb;
+    navigator.start(start, P);
+    std::size_t next = 0;
+    for (const ImuIncrement& inc : log.imu) {
+      while (next < log.fixes.size() && log.fixes[next].time <= inc.time) {
+        navigator.push(log.fixes[next++]);
+      }
+      navigator.push(inc);
+    }
+    const Solution s = navigator.solution();
+    const Eigen::Vector3d psi_e =
+        log_quaternion(sim::truth_at(rest, 600.0).nav.q_eb * s.nav.q_eb.conjugate());
+    beyond += std::abs(down_e.dot(psi_e)) > 2.0 * s.sigma_attitude_rad.z();
+  }
+  MESSAGE("heading beyond two sigma in " << beyond << " of 20");
+  CHECK(beyond <= 4);
+}
+
 }  // namespace leeway
