@@ -43,7 +43,6 @@ std::uint32_t checksum(std::span<const std::byte> snapshot) {
 /// Hashes what is visited.
 class Fingerprint : public Archive<Fingerprint> {
  public:
-  static constexpr bool kReads = false;
   void bytes(const void* data, std::size_t size) {
     value_ = crc(value_, {static_cast<const std::byte*>(data), size});
   }
