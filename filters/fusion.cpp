@@ -108,10 +108,11 @@ void Fusion::open_heading() {
   const Ekf& filter = bank_->best();
   const double sigma_rad = filter.heading_sigma_rad();
   const ErrorMatrix P = filter.covariance();
-  if (!(sigma_rad > HeadingBank::kOneFilterRad) || !filter.is_sane() ||
-      !(P.diagonal().minCoeff() > 0.0)) {
-    return;
-  }
+  // What a new filter would refuse to start from goes on in the old one: push does not throw.
+  constexpr double kLowestM = 6.35e6;  // from the Earth's centre
+  const bool can_start = filter.is_sane() && P.diagonal().minCoeff() > 0.0 &&
+                         filter.estimate().nav.r_e_m.norm() > kLowestM;
+  if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
   VehicleState vehicle = filter.vehicle();
   vehicle.cross.setZero();
   const bool estimates_vehicle = filter.estimates_vehicle();
