@@ -47,7 +47,8 @@ void validate(const Scene& scene, const CampaignOptions& options) {
 class Todo {
  public:
   explicit Todo(const std::string& bytes) : gaps_(bytes.size() / sizeof(SeedRange)) {
-    std::memcpy(gaps_.data(), bytes.data(), bytes.size());
+    // Not memcpy: it takes no null pointer, which the data of no gaps is.
+    std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(gaps_.data()));
     for (const SeedRange& gap : gaps_) count_ += gap.count;
   }
 
@@ -66,9 +67,7 @@ class Todo {
 };
 
 std::string bytes_of(const std::vector<SeedRange>& gaps) {
-  std::string bytes(gaps.size() * sizeof(SeedRange), '\0');
-  std::memcpy(bytes.data(), gaps.data(), bytes.size());
-  return bytes;
+  return {reinterpret_cast<const char*>(gaps.data()), gaps.size() * sizeof(SeedRange)};
 }
 
 /// Adds the trials of the scene that the journals hold, each once. @returns those they do not.
