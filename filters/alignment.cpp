@@ -3,21 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 
-#include "leeway/error.hpp"
 #include "leeway/filters/gnss_measurement.hpp"
+#include "require.hpp"
 
 namespace leeway {
 namespace {
 
 constexpr double kLongestLagS = 0.3;  // between the halves of a fix
-
-void require_positive(double value, const char* field) {
-  if (std::isfinite(value) && value > 0.0) return;
-  throw Error(std::string("alignment: ") + field + " is " + std::to_string(value) +
-              ", must be finite and > 0");
-}
 
 }  // namespace
 
@@ -33,14 +26,14 @@ EulerAngles level(const Eigen::Vector3d& f_b_mps2, const Eigen::Vector3d& f_leve
 
 Aligner::Aligner(const AlignmentConfig& config, const EkfConfig& filter)
     : config_(config), filter_(filter) {
-  require_positive(config.min_speed_mps, "min_speed_mps");
-  require_positive(config.sideslip_rad, "sideslip_rad");
-  require_positive(config.tilt_floor_rad, "tilt_floor_rad");
-  require_positive(config.max_fix_interval_s, "max_fix_interval_s");
-  require_positive(config.rest_speed_mps, "rest_speed_mps");
-  require_positive(config.rest_turn_rad, "rest_turn_rad");
-  require_positive(config.min_level_s, "min_level_s");
-  require_positive(config.min_rest_s, "min_rest_s");
+  require_positive("alignment", "min_speed_mps", config.min_speed_mps);
+  require_positive("alignment", "sideslip_rad", config.sideslip_rad);
+  require_positive("alignment", "tilt_floor_rad", config.tilt_floor_rad);
+  require_positive("alignment", "max_fix_interval_s", config.max_fix_interval_s);
+  require_positive("alignment", "rest_speed_mps", config.rest_speed_mps);
+  require_positive("alignment", "rest_turn_rad", config.rest_turn_rad);
+  require_positive("alignment", "min_level_s", config.min_level_s);
+  require_positive("alignment", "min_rest_s", config.min_rest_s);
 }
 
 void Aligner::push(const ImuIncrement& inc) {
@@ -174,9 +167,8 @@ Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bo
   sigma.heading_rad = sigma.tilt_rad;
   result.P = initial_covariance(estimate, sigma, filter_.imu);
   // The turn about the axis is told apart from the rest.
-  const Eigen::Matrix3d across =
-      Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose();
-  result.P.block<3, 3>(kPsi, kPsi) = across * result.P.block<3, 3>(kPsi, kPsi) * across.transpose();
+  transform_block(result.P, kPsi,
+                  Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose());
   set_rest_bias(result);
   return result;
 }

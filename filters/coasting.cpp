@@ -24,7 +24,7 @@ SteadyMotion steady_motion(const Ekf& filter) {
   const Eigen::Vector3d omega_ie = earth_rotation_e_radps();
   SteadyMotion motion;
   motion.v_e_mps = nav.v_e_mps;
-  motion.down_e = ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).col(2);
+  motion.down_e = down_e_at(nav.r_e_m);
   motion.C_eb = nav.q_eb.toRotationMatrix();
   motion.gravity_gradient_e = gravity_gradient_e(nav.r_e_m);
   const Eigen::Vector3d omega_ib_b = filter.mean_omega_ib_b_radps() - bias.b_g_radps;

@@ -112,6 +112,11 @@ void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise)
   add_noise(P, noise, 0.5 * Phi.dt_s);
 }
 
+void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T) {
+  P.middleRows<3>(row) = (T * P.middleRows<3>(row)).eval();
+  P.middleCols<3>(row) = (P.middleCols<3>(row) * T.transpose()).eval();
+}
+
 VehicleCross transported(const Transition& Phi, const VehicleCross& C) {
   VehicleCross result;
   result.middleRows<3>(kPsi) =

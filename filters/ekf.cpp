@@ -63,7 +63,7 @@ using HeldDirections = Eigen::Matrix<double, kErrorStates, 2>;
 HeldDirections directions_of(Held held, const Estimate& estimate) {
   HeldDirections U = HeldDirections::Zero();
   if (held == Held::kNothing) return U;
-  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).col(2);
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
   U.col(0).segment<3>(kPsi) = down_e;
   if (held == Held::kHeadingAndTurn) {
     U.col(1).segment<3>(kBg) = estimate.nav.q_eb.conjugate() * down_e;
@@ -220,8 +220,7 @@ void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights,
   }
   inject(estimate_, x_hat);
   const Eigen::Matrix3d J = reset_jacobian(x_hat);
-  P_.middleRows<3>(kPsi) = (J * P_.middleRows<3>(kPsi)).eval();
-  P_.middleCols<3>(kPsi) = (P_.middleCols<3>(kPsi) * J.transpose()).eval();
+  transform_block(P_, kPsi, J);
   if (estimates_vehicle_) {
     vehicle_.cross.middleRows<3>(kPsi) = (J * vehicle_.cross.middleRows<3>(kPsi)).eval();
   }
@@ -263,14 +262,13 @@ UpdateReport Ekf::update(const Measurement& m, Held held) {
 }
 
 double Ekf::heading_sigma_rad() const {
-  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate_.nav.r_e_m)).col(2);
-  return std::sqrt(std::max(0.0, down_e.dot(P_.block<3, 3>(kPsi, kPsi) * down_e)));
+  return std::sqrt(std::max(0.0, heading_variance_rad2(estimate_, P_)));
 }
 
 bool Ekf::rest_hides_heading() const {
   const TriadErrorModel& gyro = config_.imu.gyro;
   const double bias_radps = std::hypot(gyro.bias_sigma, gyro.in_run.sigma);
-  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate_.nav.r_e_m)).col(2);
+  const Eigen::Vector3d down_e = down_e_at(estimate_.nav.r_e_m);
   const double level_rate_radps = earth_rotation_e_radps().cross(down_e).norm();
   return bias_radps > level_rate_radps * heading_sigma_rad();
 }
@@ -300,10 +298,7 @@ void Ekf::turn_body_axes(const Eigen::Matrix3d& C_new_old, const Eigen::Vector3d
       (estimate_.nav.q_eb * Eigen::Quaterniond(C_new_old.transpose())).normalized();
   estimate_.bias.b_a_mps2 = C_new_old * estimate_.bias.b_a_mps2;
   estimate_.bias.b_g_radps = C_new_old * estimate_.bias.b_g_radps;
-  for (const int bias : {kBa, kBg}) {
-    P_.middleRows<3>(bias) = (C_new_old * P_.middleRows<3>(bias)).eval();
-    P_.middleCols<3>(bias) = (P_.middleCols<3>(bias) * C_new_old.transpose()).eval();
-  }
+  for (const int bias : {kBa, kBg}) transform_block(P_, bias, C_new_old);
   omega_ib_b_radps_ = C_new_old * omega_ib_b_radps_;
   mean_omega_ib_b_radps_ = C_new_old * mean_omega_ib_b_radps_;
   history_ = ImuHistory{};
@@ -382,6 +377,17 @@ ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sig
   P.diagonal().segment<3>(kBa).setConstant(variance(imu.accelerometer));
   P.diagonal().segment<3>(kBg).setConstant(variance(imu.gyro));
   return P;
+}
+
+double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P) {
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
+  return down_e.dot(P.block<3, 3>(kPsi, kPsi) * down_e);
+}
+
+Ekf filter_anywhere(const EkfConfig& config) {
+  Estimate somewhere;
+  somewhere.nav.r_e_m.x() = wgs84::kSemiMajorAxisM;
+  return Ekf(config, somewhere, ErrorMatrix::Identity());
 }
 
 Solution solution(const Estimate& estimate, const ErrorMatrix& P) {

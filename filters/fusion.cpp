@@ -32,12 +32,11 @@ EkfConfig filter_of(const NavigatorConfig& config) {
 }
 
 /// Several headings about the one of the estimate.
-HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
+HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, ErrorMatrix P,
                         double sigma_rad) {
-  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).col(2);
-  ErrorMatrix across = ErrorMatrix::Identity();
-  across.block<3, 3>(kPsi, kPsi) -= down_e * down_e.transpose();
-  return HeadingBank(config, estimate, across * P * across.transpose(), down_e, sigma_rad);
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
+  transform_block(P, kPsi, Eigen::Matrix3d::Identity() - down_e * down_e.transpose());
+  return HeadingBank(config, estimate, P, down_e, sigma_rad);
 }
 
 ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
@@ -49,11 +48,7 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
 
 }  // namespace
 
-Ekf Fusion::any_filter() const {
-  Estimate somewhere;
-  somewhere.nav.r_e_m.x() = wgs84::kSemiMajorAxisM;
-  return Ekf(filter_of(config_), somewhere, ErrorMatrix::Identity());
-}
+Ekf Fusion::any_filter() const { return filter_anywhere(filter_of(config_)); }
 
 Fusion::Fusion(const NavigatorConfig& config)
     : config_(config),
@@ -64,19 +59,16 @@ Fusion::Fusion(const NavigatorConfig& config)
 }
 
 void Fusion::start(const Estimate& estimate, const ErrorMatrix& P) {
-  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).col(2);
-  const double sigma_rad = std::sqrt(std::max(0.0, down_e.dot(P.block<3, 3>(kPsi, kPsi) * down_e)));
-  if (!(sigma_rad > HeadingBank::kOneFilterRad)) {
-    return begin(HeadingBank(Ekf(filter_of(config_), estimate, P)));
-  }
-  begin(bank_around(filter_of(config_), estimate, P, sigma_rad));
+  const double variance_rad2 = heading_variance_rad2(estimate, P);
+  const double sigma_rad = std::sqrt(std::max(0.0, variance_rad2));
+  begin(sigma_rad > HeadingBank::kOneFilterRad
+            ? bank_around(filter_of(config_), estimate, P, sigma_rad)
+            : HeadingBank(Ekf(filter_of(config_), estimate, P)));
 }
 
 void Fusion::begin(const HeadingBank& bank) {
   bank_ = bank;
-  last_fused_ = bank_->best().estimate().nav.time;
-  gated_in_a_row_ = 0;
-  gated_since_.reset();
+  note_fused(bank_->best().estimate().nav.time);
   if (C_bs_) begin_vehicle();
 }
 
@@ -155,6 +147,12 @@ void Fusion::align(const GnssFix& fix) {
                     found->turn_sigma_rad));
 }
 
+void Fusion::note_fused(Time t) {
+  last_fused_ = t;
+  gated_in_a_row_ = 0;
+  gated_since_.reset();
+}
+
 Verdict Fusion::settle(const GnssFix& fix) {
   using Outcome = UpdateReport::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
@@ -173,9 +171,7 @@ Verdict Fusion::settle(const GnssFix& fix) {
     follow_drift();
   }
   if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
-  last_fused_ = fix.time;
-  gated_in_a_row_ = 0;
-  gated_since_.reset();
+  note_fused(fix.time);
   return Verdict::kFused;
 }
 
@@ -228,9 +224,7 @@ void Fusion::restart_motion(const GnssFix& fix) {
                           fix.velocity ? fix.velocity->v_e_mps : filter.estimate().nav.v_e_mps,
                           fix.velocity ? fix.velocity->R_e_m2ps2 : unknown);
   });
-  last_fused_ = fix.time;
-  gated_in_a_row_ = 0;
-  gated_since_.reset();
+  note_fused(fix.time);
 }
 
 void Fusion::realign() {
@@ -266,22 +260,25 @@ void Fusion::find_mount() {
 }
 
 Verdict Fusion::fuse(const OdometerSpeed& odometer) {
-  if (!config_.vehicle.odometer) return Verdict::kUnused;
-  if (!bank_ || !C_bs_) return Verdict::kAligning;
-  const UpdateReport report = bank_->update([&](Ekf& filter) {
-    return filter.update(odometer_speed(odometer.speed_mps, odometer.sigma_mps, filter.estimate(),
-                                        filter.vehicle().value, filter.omega_ib_b_radps()));
+  return aid(config_.vehicle.odometer, [&odometer](const Ekf& filter) {
+    return odometer_speed(odometer.speed_mps, odometer.sigma_mps, filter.estimate(),
+                          filter.vehicle().value, filter.omega_ib_b_radps());
   });
-  return report.outcome == UpdateReport::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }
 
 Verdict Fusion::fuse(const BarometricHeight& barometer) {
-  if (!config_.vehicle.barometer) return Verdict::kUnused;
-  if (!bank_ || !C_bs_) return Verdict::kAligning;
-  const UpdateReport report = bank_->update([&](Ekf& filter) {
-    return filter.update(barometric_height(barometer.height_m, barometer.sigma_m, filter.estimate(),
-                                           filter.vehicle().value));
+  return aid(config_.vehicle.barometer, [&barometer](const Ekf& filter) {
+    return barometric_height(barometer.height_m, barometer.sigma_m, filter.estimate(),
+                             filter.vehicle().value);
   });
+}
+
+template <class F>
+Verdict Fusion::aid(bool is_on, F&& measurement) {
+  if (!is_on) return Verdict::kUnused;
+  if (!bank_ || !C_bs_) return Verdict::kAligning;
+  const UpdateReport report =
+      bank_->update([&](Ekf& filter) { return filter.update(measurement(filter)); });
   return report.outcome == UpdateReport::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }
 

@@ -33,8 +33,7 @@ Estimate turned_about_antenna(const Estimate& estimate, const Eigen::Vector3d& t
 
 /// The covariance of attitude errors that are known in body axes, after the body has turned.
 ErrorMatrix turned_with_body(ErrorMatrix P, const Eigen::Matrix3d& turn_e) {
-  P.middleRows<3>(kPsi) = (turn_e * P.middleRows<3>(kPsi)).eval();
-  P.middleCols<3>(kPsi) = (P.middleCols<3>(kPsi) * turn_e.transpose()).eval();
+  transform_block(P, kPsi, turn_e);
   P.block<3, 3>(kPsi, kPsi) =
       (0.5 * (P.block<3, 3>(kPsi, kPsi) + P.block<3, 3>(kPsi, kPsi).transpose())).eval();
   return P;

@@ -49,7 +49,7 @@ void History::restart(const Fusion& fusion, Time now) {
   checkpoints_.push_back({fusion_, now, steps_forgotten_});
   while (!events_.empty() && events_.front().time < now) {
     const Event& event = events_.front();
-    if (!event.done && event.counts) ++ledger_[static_cast<std::size_t>(Verdict::kLate)];
+    if (!event.done) refuse(event, Verdict::kLate);
     events_.pop_front();
   }
 }
@@ -103,8 +103,17 @@ void History::decide(Event& event) {
   event.done = true;
 }
 
+Verdict History::refuse(const Event& event, Verdict verdict) {
+  if (event.counts) ++ledger_[static_cast<std::size_t>(verdict)];
+  return verdict;
+}
+
+bool History::is_checkpoint_due() const {
+  return to_seconds(*now_ - checkpoints_.back().time) >= kCheckpointS;
+}
+
 void History::keep_checkpoint() {
-  if (to_seconds(*now_ - checkpoints_.back().time) < kCheckpointS) return;
+  if (!is_checkpoint_due()) return;
   if (checkpoints_.full()) checkpoints_.pop_front();
   checkpoints_.push_back({fusion_, *now_, steps_forgotten_ + steps_.size()});
   const Duration lateness = duration_from_seconds(config_.timing.max_lateness_s);
@@ -125,27 +134,27 @@ void History::forget_old() {
   }
 }
 
-History::Place History::push(const Event& event) {
+Verdict History::push(const Event& event) {
   if (events_.full()) make_room();
   const bool within = now_ && event.time <= *now_;
   if (within && (event.time <= checkpoints_.front().time ||
                  to_seconds(*now_ - event.time) > config_.timing.max_lateness_s)) {
-    return Place::kLate;
+    return refuse(event, Verdict::kLate);
   }
   std::size_t place = 0;
   while (place < events_.size() && !acts_before(event, events_[place])) {
     if (events_[place].time == event.time && same_kind(events_[place], event)) {
-      return Place::kDuplicate;
+      return refuse(event, Verdict::kDuplicate);
     }
     ++place;
   }
-  if (events_.full()) return Place::kFull;
+  if (events_.full()) return refuse(event, Verdict::kOverflow);
   events_.insert(place, event);
-  if (!within) return Place::kAhead;
+  if (!within) return Verdict::kAccepted;
   std::size_t checkpoint = checkpoints_.size() - 1;
   while (checkpoints_[checkpoint].time >= event.time) --checkpoint;
   rewind(checkpoint);
-  return Place::kWithin;
+  return events_[place].verdict;
 }
 
 void History::make_room() {
@@ -167,17 +176,10 @@ void History::rewind(std::size_t checkpoint) {
   const std::size_t first = static_cast<std::size_t>(from.next_step - steps_forgotten_);
   for (std::size_t k = first; k < steps_.size(); ++k) {
     run(steps_[k]);
-    if (to_seconds(*now_ - checkpoints_.back().time) >= kCheckpointS && !checkpoints_.full()) {
+    if (is_checkpoint_due() && !checkpoints_.full()) {
       checkpoints_.push_back({fusion_, *now_, steps_forgotten_ + k + 1});
     }
   }
-}
-
-Verdict History::verdict(const Event& event) const {
-  for (std::size_t k = 0; k < events_.size(); ++k) {
-    if (events_[k].time == event.time && same_kind(events_[k], event)) return events_[k].verdict;
-  }
-  return Verdict::kLate;
 }
 
 }  // namespace leeway

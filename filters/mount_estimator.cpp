@@ -17,13 +17,11 @@ void MountEstimator::push(const HeadingBank& bank) {
   const double speed_mps = nav.v_e_mps.norm();
   const Eigen::Vector3d rate = filter.mean_omega_ib_b_radps() - filter.estimate().bias.b_g_radps;
   if (speed_mps < kMinSpeedMps || rate.norm() > kMaxTurnRadps) return;
-  const Eigen::Vector3d down_e = ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).col(2);
-  const ErrorMatrix P = bank.covariance();
-  const double heading_variance = down_e.dot(P.block<3, 3>(kPsi, kPsi) * down_e);
-  if (heading_variance > kMaxHeadingSigmaRad * kMaxHeadingSigmaRad) return;
+  const double variance_rad2 = heading_variance_rad2(filter.estimate(), bank.covariance());
+  if (variance_rad2 > kMaxHeadingSigmaRad * kMaxHeadingSigmaRad) return;
   const Eigen::Quaterniond q_be = nav.q_eb.conjugate();
   forward_s_ += step_s * (q_be * (nav.v_e_mps / speed_mps));
-  down_s_ += step_s * (q_be * down_e);
+  down_s_ += step_s * (q_be * down_e_at(nav.r_e_m));
   seen_s_ += step_s;
 }
 

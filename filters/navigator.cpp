@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "leeway/error.hpp"
+#include "require.hpp"
 
 namespace leeway {
 namespace {
@@ -17,6 +17,14 @@ bool all_finite(const GnssFix& fix) {
   return (!fix.position || (fix.position->r_e_m.allFinite() && fix.position->R_e_m2.allFinite())) &&
          (!fix.velocity ||
           (fix.velocity->v_e_mps.allFinite() && fix.velocity->R_e_m2ps2.allFinite()));
+}
+
+bool all_finite(const OdometerSpeed& odometer) {
+  return std::isfinite(odometer.speed_mps) && std::isfinite(odometer.sigma_mps);
+}
+
+bool all_finite(const BarometricHeight& barometer) {
+  return std::isfinite(barometer.height_m) && std::isfinite(barometer.sigma_m);
 }
 
 bool is_possible(Time t) {
@@ -36,12 +44,6 @@ double seconds_since(const std::optional<Time>& then, const std::optional<Time>&
   return then && now ? std::max(0.0, to_seconds(*now - *then)) : 0.0;
 }
 
-void require(bool holds, const char* field, double value, const char* range) {
-  if (holds) return;
-  throw Error(std::string("navigator: ") + field + " is " + std::to_string(value) + ", must be " +
-              range);
-}
-
 }  // namespace
 
 std::string_view name(Verdict verdict) {
@@ -53,22 +55,23 @@ std::string_view name(Verdict verdict) {
 }
 
 void validate(const NavigatorConfig& config) {
+  constexpr const char* kOwner = "navigator";
   const TimingConfig& timing = config.timing;
-  require(config.max_gap_s > 0.0 && config.max_gap_s <= 10.0, "max_gap_s", config.max_gap_s,
+  require(config.max_gap_s > 0.0 && config.max_gap_s <= 10.0, kOwner, "max_gap_s", config.max_gap_s,
           "above 0, at most 10 s");
-  require(config.max_jump_s >= config.max_gap_s && config.max_jump_s <= 1e5, "max_jump_s",
+  require(config.max_jump_s >= config.max_gap_s && config.max_jump_s <= 1e5, kOwner, "max_jump_s",
           config.max_jump_s, "max_gap_s to 1e5 s");
-  require(config.max_rate_radps > 0.0, "max_rate_radps", config.max_rate_radps, "above 0");
-  require(config.max_force_mps2 > 0.0, "max_force_mps2", config.max_force_mps2, "above 0");
-  require(std::abs(timing.position_lag_s) <= 10.0, "position_lag_s", timing.position_lag_s,
+  require(config.max_rate_radps > 0.0, kOwner, "max_rate_radps", config.max_rate_radps, "above 0");
+  require(config.max_force_mps2 > 0.0, kOwner, "max_force_mps2", config.max_force_mps2, "above 0");
+  require(std::abs(timing.position_lag_s) <= 10.0, kOwner, "position_lag_s", timing.position_lag_s,
           "within 10 s");
-  require(std::abs(timing.velocity_lag_s) <= 10.0, "velocity_lag_s", timing.velocity_lag_s,
+  require(std::abs(timing.velocity_lag_s) <= 10.0, kOwner, "velocity_lag_s", timing.velocity_lag_s,
           "within 10 s");
-  require(timing.max_lateness_s >= 0.0 && timing.max_lateness_s <= 60.0, "max_lateness_s",
+  require(timing.max_lateness_s >= 0.0 && timing.max_lateness_s <= 60.0, kOwner, "max_lateness_s",
           timing.max_lateness_s, "0 to 60 s");
-  require(timing.max_ahead_s >= 0.0 && timing.max_ahead_s <= 1e4, "max_ahead_s", timing.max_ahead_s,
-          "0 to 1e4 s");
-  require(timing.max_imu_rate_hz >= 1.0 && timing.max_imu_rate_hz <= 1e4, "max_imu_rate_hz",
+  require(timing.max_ahead_s >= 0.0 && timing.max_ahead_s <= 1e4, kOwner, "max_ahead_s",
+          timing.max_ahead_s, "0 to 1e4 s");
+  require(timing.max_imu_rate_hz >= 1.0 && timing.max_imu_rate_hz <= 1e4, kOwner, "max_imu_rate_hz",
           timing.max_imu_rate_hz, "1 to 1e4 Hz");
   if (config.C_bs && !((*config.C_bs * config.C_bs->transpose() - Eigen::Matrix3d::Identity())
                                .cwiseAbs()
@@ -77,9 +80,7 @@ void validate(const NavigatorConfig& config) {
     throw Error("navigator: C_bs must be a proper rotation to 1e-6");
   }
   // A bad filter configuration is to be told now, not when alignment ends in the middle of a drive.
-  Estimate somewhere;
-  somewhere.nav.r_e_m.x() = wgs84::kSemiMajorAxisM;
-  Ekf(config.filter, somewhere, ErrorMatrix::Identity());
+  filter_anywhere(config.filter);
 }
 
 Navigator::Navigator(const NavigatorConfig& config)
@@ -158,24 +159,26 @@ Verdict Navigator::take(const ImuIncrement& inc, Time as_told) {
   return aligned() ? Verdict::kAccepted : Verdict::kAligning;
 }
 
-Verdict Navigator::push(const GnssFix& fix) {
-  if (!all_finite(fix)) return counted(Verdict::kNotFinite);
-  if (!is_usable(fix) || !is_possible(fix.time)) return counted(Verdict::kImplausible);
-  return take(fix);
+template <class Reading>
+Verdict Navigator::judge_and_take(const Reading& reading) {
+  if (!all_finite(reading)) return counted(Verdict::kNotFinite);
+  if (!is_usable(reading) || !is_possible(reading.time)) return counted(Verdict::kImplausible);
+  return take(reading);
 }
+
+Verdict Navigator::push(const GnssFix& fix) { return judge_and_take(fix); }
+Verdict Navigator::push(const OdometerSpeed& odometer) { return judge_and_take(odometer); }
+Verdict Navigator::push(const BarometricHeight& barometer) { return judge_and_take(barometer); }
 
 Verdict Navigator::take(const GnssFix& fix) {
   const TimingConfig& timing = config_.timing;
+  const Time t = clock_.counted_on(fix.time);
   GnssFix position = fix;
-  position.time = clock_.counted_on(fix.time) - duration_from_seconds(timing.position_lag_s);
-  if (timing.position_lag_s == timing.velocity_lag_s || !fix.velocity || !fix.position) {
-    if (!fix.position) {
-      position.time = clock_.counted_on(fix.time) - duration_from_seconds(timing.velocity_lag_s);
-    }
-    return place({position.time, position});
-  }
-  GnssFix velocity = position;
-  velocity.time = clock_.counted_on(fix.time) - duration_from_seconds(timing.velocity_lag_s);
+  GnssFix velocity = fix;
+  position.time = t - duration_from_seconds(timing.position_lag_s);
+  velocity.time = t - duration_from_seconds(timing.velocity_lag_s);
+  if (!fix.position) return place({velocity.time, velocity});
+  if (!fix.velocity || position.time == velocity.time) return place({position.time, position});
   velocity.position.reset();
   position.velocity.reset();
   // The verdict is that on the position.
@@ -183,43 +186,20 @@ Verdict Navigator::take(const GnssFix& fix) {
   return place({position.time, position});
 }
 
-Verdict Navigator::push(const OdometerSpeed& odometer) {
-  if (!std::isfinite(odometer.speed_mps) || !std::isfinite(odometer.sigma_mps)) {
-    return counted(Verdict::kNotFinite);
-  }
-  if (!is_usable(odometer) || !is_possible(odometer.time)) return counted(Verdict::kImplausible);
-  const Time t = clock_.counted_on(odometer.time);
-  return place({t, odometer});
+Verdict Navigator::take(const OdometerSpeed& odometer) {
+  return place({clock_.counted_on(odometer.time), odometer});
 }
 
-Verdict Navigator::push(const BarometricHeight& barometer) {
-  if (!std::isfinite(barometer.height_m) || !std::isfinite(barometer.sigma_m)) {
-    return counted(Verdict::kNotFinite);
-  }
-  if (!is_usable(barometer) || !is_possible(barometer.time)) return counted(Verdict::kImplausible);
-  const Time t = clock_.counted_on(barometer.time);
-  return place({t, barometer});
+Verdict Navigator::take(const BarometricHeight& barometer) {
+  return place({clock_.counted_on(barometer.time), barometer});
 }
 
 Verdict Navigator::place(const Event& event) {
   const std::optional<Time>& now = clock_.newest();
-  const auto refused = [&](Verdict verdict) { return event.counts ? counted(verdict) : verdict; };
   if (now && to_seconds(event.time - *now) > config_.timing.max_ahead_s) {
-    return refused(Verdict::kFuture);
+    return event.counts ? counted(Verdict::kFuture) : Verdict::kFuture;
   }
-  switch (history_.push(event)) {
-    case History::Place::kAhead:
-      return Verdict::kAccepted;
-    case History::Place::kWithin:
-      return history_.verdict(event);
-    case History::Place::kLate:
-      return refused(Verdict::kLate);
-    case History::Place::kDuplicate:
-      return refused(Verdict::kDuplicate);
-    case History::Place::kFull:
-      break;
-  }
-  return refused(Verdict::kOverflow);
+  return history_.push(event);
 }
 
 Solution Navigator::solution() const {

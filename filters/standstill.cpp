@@ -2,18 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "leeway/error.hpp"
+#include "require.hpp"
 
 namespace leeway {
 namespace {
-
-void require_positive(double value, const char* field) {
-  if (std::isfinite(value) && value > 0.0) return;
-  throw Error(std::string("standstill: ") + field + " is " + std::to_string(value) +
-              ", must be finite and > 0");
-}
 
 double spread(const Eigen::Vector3d& sum, const Eigen::Vector3d& square_sum, int count) {
   const Eigen::Vector3d mean = sum / count;
@@ -48,11 +41,11 @@ StandstillDetector::StandstillDetector(const StandstillConfig& config, const Imu
     : config_(config),
       gyro_noise_rad_per_sqrt_s_(imu.gyro.noise_density),
       force_noise_mps_per_sqrt_s_(imu.accelerometer.noise_density) {
-  require_positive(config.gyro_std_radps, "gyro_std_radps");
-  require_positive(config.force_std_mps2, "force_std_mps2");
-  require_positive(config.turn_radps, "turn_radps");
-  require_positive(config.acceleration_mps2, "acceleration_mps2");
-  require_positive(config.speed_mps, "speed_mps");
+  require_positive("standstill", "gyro_std_radps", config.gyro_std_radps);
+  require_positive("standstill", "force_std_mps2", config.force_std_mps2);
+  require_positive("standstill", "turn_radps", config.turn_radps);
+  require_positive("standstill", "acceleration_mps2", config.acceleration_mps2);
+  require_positive("standstill", "speed_mps", config.speed_mps);
 }
 
 bool StandstillDetector::push(const ImuBlock& block, const Ekf& filter) {

@@ -1,10 +1,9 @@
 #include "leeway/filters/vehicle_aiding.hpp"
 
 #include <cmath>
-#include <string>
 
-#include "leeway/error.hpp"
 #include "leeway/filters/vehicle_measurements.hpp"
+#include "require.hpp"
 
 namespace leeway {
 namespace {
@@ -12,20 +11,6 @@ namespace {
 // While several headings are possible the constraint only has to tell them apart.
 constexpr double kOpenHeadingRightMps = 0.5;
 constexpr double kOpenHeadingRightM = 1.0;
-
-void require(bool holds, const char* field, double value, const char* range) {
-  if (holds) return;
-  throw Error(std::string("vehicle: ") + field + " is " + std::to_string(value) + ", must be " +
-              range);
-}
-
-void require_sigma(const char* field, double value) {
-  require(std::isfinite(value) && value > 0.0, field, value, "finite and > 0");
-}
-
-void require_not_negative(const char* field, double value) {
-  require(std::isfinite(value) && value >= 0.0, field, value, "finite and >= 0");
-}
 
 }  // namespace
 
@@ -40,21 +25,22 @@ VehicleConfig VehicleConfig::car() {
 }
 
 void validate(const VehicleConfig& config) {
-  require_sigma("rest_sigma_mps", config.rest_sigma_mps);
-  require_sigma("rest_turn_sigma_radps", config.rest_turn_sigma_radps);
-  require_sigma("min_speed_mps", config.min_speed_mps);
-  require_sigma("right_sigma_mps", config.right_sigma_mps);
-  require_not_negative("right_sigma_m", config.right_sigma_m);
-  require_sigma("down_sigma_m2ps2", config.down_sigma_m2ps2);
-  require(std::abs(config.rear_axle_x_m) <= 100.0, "rear_axle_x_m", config.rear_axle_x_m,
+  constexpr const char* kOwner = "vehicle";
+  require_positive(kOwner, "rest_sigma_mps", config.rest_sigma_mps);
+  require_positive(kOwner, "rest_turn_sigma_radps", config.rest_turn_sigma_radps);
+  require_positive(kOwner, "min_speed_mps", config.min_speed_mps);
+  require_positive(kOwner, "right_sigma_mps", config.right_sigma_mps);
+  require_not_negative(kOwner, "right_sigma_m", config.right_sigma_m);
+  require_positive(kOwner, "down_sigma_m2ps2", config.down_sigma_m2ps2);
+  require(std::abs(config.rear_axle_x_m) <= 100.0, kOwner, "rear_axle_x_m", config.rear_axle_x_m,
           "within 100 m");
-  require_not_negative("rear_axle_sigma_m", config.rear_axle_sigma_m);
-  require_not_negative("mount_sigma_rad", config.mount_sigma_rad);
-  require_not_negative("mount_walk_rad_per_sqrt_s", config.mount_walk_rad_per_sqrt_s);
-  require_not_negative("odometer_scale_sigma", config.odometer_scale_sigma);
-  require_not_negative("odometer_walk_per_sqrt_s", config.odometer_walk_per_sqrt_s);
-  require_not_negative("height_offset_sigma_m", config.height_offset_sigma_m);
-  require_not_negative("height_walk_m_per_sqrt_s", config.height_walk_m_per_sqrt_s);
+  require_not_negative(kOwner, "rear_axle_sigma_m", config.rear_axle_sigma_m);
+  require_not_negative(kOwner, "mount_sigma_rad", config.mount_sigma_rad);
+  require_not_negative(kOwner, "mount_walk_rad_per_sqrt_s", config.mount_walk_rad_per_sqrt_s);
+  require_not_negative(kOwner, "odometer_scale_sigma", config.odometer_scale_sigma);
+  require_not_negative(kOwner, "odometer_walk_per_sqrt_s", config.odometer_walk_per_sqrt_s);
+  require_not_negative(kOwner, "height_offset_sigma_m", config.height_offset_sigma_m);
+  require_not_negative(kOwner, "height_walk_m_per_sqrt_s", config.height_walk_m_per_sqrt_s);
 }
 
 VehicleState vehicle_state(const VehicleConfig& config) {

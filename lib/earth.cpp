@@ -220,6 +220,10 @@ Eigen::Matrix3d ned_to_ecef(const Geodetic& position) {
   return C_en;
 }
 
+Eigen::Vector3d down_e_at(const Eigen::Vector3d& r_e_m) {
+  return ned_to_ecef(geodetic_from_ecef(r_e_m)).col(2);
+}
+
 template <>
 Eigen::Vector3d gravity_e<GravityModel::kConstant>(const Eigen::Vector3d& r_e_m) {
   const Eigen::Vector3d outward(r_e_m.x(), r_e_m.y(), r_e_m.z() / (1.0 - kE2));

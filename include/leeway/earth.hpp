@@ -41,6 +41,9 @@ Geodetic geodetic_from_ecef(const Eigen::Vector3d& r_e_m);
 /// limit along the meridian of the given longitude.
 Eigen::Matrix3d ned_to_ecef(const Geodetic& position);
 
+/// Its last column: the unit vector down, in ECEF.
+Eigen::Vector3d down_e_at(const Eigen::Vector3d& r_e_m);
+
 /// How much of the Earth's gravity a strapdown models.
 enum class GravityModel {
   kConstant,  ///< 9.80665 m/s^2 along the ellipsoid's normal; within 0.027 m/s^2 at height 0 and

@@ -34,6 +34,9 @@ ProcessNoise process_noise(const ImuErrorModel& model);
 /// Source: Groves (2013) (3.46), "Phi (P + Q/2) Phi^T + Q/2".
 void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise);
 
+/// What becomes of P when the three errors from `row` on become T times what they are.
+void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T);
+
 /// Phi C: what becomes of the covariance of the 15 errors with constants.
 VehicleCross transported(const Transition& Phi, const VehicleCross& C);
 

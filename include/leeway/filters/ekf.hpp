@@ -192,6 +192,13 @@ class Ekf {
 ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sigma,
                                const ImuErrorModel& imu);
 
+/// Variance of a turn about the local vertical: of the heading.
+double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P);
+
+/// A filter of this configuration at some place on Earth: to see whether there can be one.
+/// @throws Error when the configuration is invalid.
+Ekf filter_anywhere(const EkfConfig& config);
+
 /// The estimate as people read it, with 1-sigma; nis and nis_dof are left unset.
 Solution solution(const Estimate& estimate, const ErrorMatrix& P);
 

@@ -78,7 +78,10 @@ class Fusion {
   void find_mount();
   void open_heading();
   Verdict settle(const GnssFix& fix);
+  void note_fused(Time t);
   void follow_drift();
+  template <class F>
+  Verdict aid(bool is_on, F&& measurement);
   Verdict locked_out(const GnssFix& fix);
   void realign();
   bool locks_out_again(Time t);

@@ -45,13 +45,10 @@ class History {
   /// @pre step.inc.time is later than every step before and step.inc reaches back to the last one.
   void push(const Step& step);
 
-  enum class Place { kAhead, kWithin, kLate, kDuplicate, kFull };
-
   /// Takes an event, and if it lies in the past goes back for it.
-  Place push(const Event& event);
-
-  /// The verdict on the event of this time and kind.
-  Verdict verdict(const Event& event) const;
+  /// @returns kAccepted when it waits for IMU data, what became of it when it acted, or why it was
+  /// not taken: kLate, kDuplicate, kOverflow. All but kAccepted is in the ledger.
+  Verdict push(const Event& event);
 
   const Fusion& fusion() const { return fusion_; }
   const std::optional<Time>& now() const { return now_; }
@@ -90,11 +87,12 @@ class History {
   void run(const Step& step);
   void integrate(const Step& step, Time to, ImuIncrement& rest);
   void decide(Event& event);
+  Verdict refuse(const Event& event, Verdict verdict);
   void rewind(std::size_t checkpoint);
+  bool is_checkpoint_due() const;
   void keep_checkpoint();
   void forget_old();
   void make_room();
-  std::size_t place_of(const Event& event) const;
 
   NavigatorConfig config_;
   Fusion fusion_;

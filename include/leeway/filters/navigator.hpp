@@ -89,7 +89,11 @@ class Navigator {
   Verdict counted(Verdict verdict);
   Verdict take(const ImuIncrement& inc, Time as_told);
   Verdict judge(const ImuIncrement& inc) const;
+  template <class Reading>
+  Verdict judge_and_take(const Reading& reading);
   Verdict take(const GnssFix& fix);
+  Verdict take(const OdometerSpeed& odometer);
+  Verdict take(const BarometricHeight& barometer);
   Verdict place(const Event& event);
 
   NavigatorConfig config_;
