@@ -143,7 +143,8 @@ void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
   app.add_option("--without", vehicle.without, "switch a part of --vehicle off; may be repeated")
       ->check(CLI::IsMember(vehicle_part_names()));
   app.add_flag("--estimate-mount", vehicle.estimate_mount,
-               "estimate the mount even if one is given, as meta.json of a --drive does");
+               "estimate the mount even if meta.json of a --drive gives one")
+      ->excludes(app.get_option("--mount"));
 }
 
 void add_timing_options(CLI::App& app, TimingConfig& timing) {

@@ -183,8 +183,10 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
 
 std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
-  if (options.vehicle.name == "none" && !(logs.odometer.empty() && logs.barometer.empty())) {
-    throw Error("--odometer and --barometer are used with --vehicle car");
+  const bool asks_for_a_vehicle =
+      !options.vehicle.without.empty() || !logs.odometer.empty() || !logs.barometer.empty();
+  if (options.vehicle.name == "none" && asks_for_a_vehicle) {
+    throw Error("--without, --odometer and --barometer are used with --vehicle car");
   }
   if (logs.drives.empty() && (logs.imu.empty() || logs.gnss.empty())) {
     throw Error("fuse needs --imu and --gnss, or --drive");

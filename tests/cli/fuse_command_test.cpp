@@ -129,6 +129,40 @@ TEST_CASE("fuse --mount takes sensor axes to the body, as forward-left-up or as 
   CHECK(contains(upside_down.err, "vertical sensor axis points up"));
 }
 
+TEST_CASE("fuse --vehicle car finds the mount, and takes an odometer that reads too much") {
+  const TempDir dir;
+  // Sensor axes left, back, up: roll 180, yaw -90 deg to forward, right, down.
+  const auto left = dir.file("left.csv", in_sensor_axes({1, 0, 2}, {-1.0, -1.0, -1.0}));
+  const std::string car = Simulated::fuse(left, simulated().gnss) + " --vehicle car --truth " +
+                          quoted(simulated().truth) + " --json";
+  const json found = leeway(car).json().at("results");
+  const json mount = found.at("solution").at("health").at("mount_rpy_deg");
+  constexpr double kFoundDeg = 6.0;  // as good as a heading known to 0.1 rad
+  CHECK(std::abs(std::abs(mount[0].get<double>()) - 180.0) < kFoundDeg);
+  CHECK(std::abs(mount[1].get<double>()) < kFoundDeg);
+  CHECK(std::abs(std::remainder(mount[2].get<double>() + 90.0, 360.0)) < kFoundDeg);
+  CHECK(found.at("verdicts").at("gated") == 0);
+
+  std::string speeds = "t_s,speed_mps\n";
+  std::size_t readings = 0;
+  for (const std::string& line : lines_of(simulated().truth)) {
+    if (line.starts_with("t_s")) continue;
+    const std::vector<double> row = numbers_of(line);
+    if (row[0] != std::floor(row[0])) continue;
+    speeds += std::to_string(row[0]) + "," +
+              std::to_string(1.02 * std::hypot(row[4], row[5], row[6])) + "\n";
+    ++readings;
+  }
+  const std::string odometer = " --odometer " + quoted(dir.file("odometer.csv", speeds));
+  const json off = leeway(car + odometer + " --without odometer").json().at("results");
+  CHECK(off.at("verdicts").at("unused") == readings);
+  CHECK(off.at("verdicts").at("fused") == found.at("verdicts").at("fused"));
+  const json on = leeway(car + odometer).json().at("results");
+  CHECK(on.at("verdicts").at("fused") > found.at("verdicts").at("fused"));
+  CHECK(on.at("verdicts").at("gated") == 0);
+  CHECK(on.at("rms").at("velocity_mps") < 1.1 * found.at("rms").at("velocity_mps").get<double>());
+}
+
 TEST_CASE("fuse takes a log through a pipe") {
   CHECK(near(horizontal_rms_m(Simulated::fuse("/dev/stdin", simulated().gnss) + " --truth " +
                                   quoted(simulated().truth),

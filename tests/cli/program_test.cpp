@@ -100,6 +100,12 @@ TEST_CASE("wrong usage exits with 1 and one line that names what is wrong") {
       {fuse + " --covariance-interval-s=-1", "covariance"},
       {fuse + " --gnss-sigma-scale 0,1", "scale"},
       {fuse + " --drive x", "--drive"},
+      {fuse + " --vehicle truck", "truck"},
+      {fuse + " --without non-holonomic", "--vehicle car"},
+      {fuse + " --vehicle car --without wheels", "wheels"},
+      {fuse + " --odometer x", "--vehicle car"},
+      {fuse + " --estimate-mount --mount 0,0,0", "--mount"},
+      {fuse + " --velocity-lag-s 100", "velocity_lag_s"},
   };
   for (const auto& c : cases) {
     CAPTURE(c.arguments);
