@@ -21,13 +21,13 @@ double chi_square_survival(double x, int dof) {
   };
   double sum = dof % 2 == 0 ? 0.0 : std::erfc(std::sqrt(half_x));
   double t = term(top);
-  for (double k = top; k >= first; k -= 1.0) {
+  for (int i = 0; top - i >= first; ++i) {
     sum += t;
-    t *= k / half_x;
+    t *= (top - i) / half_x;
   }
   t = term(top);
-  for (double k = top + 1.0; k <= last; k += 1.0) {
-    t *= half_x / k;
+  for (int i = 1; top + i <= last; ++i) {
+    t *= half_x / (top + i);
     sum += t;
   }
   return sum;

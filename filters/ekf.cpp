@@ -1,12 +1,12 @@
 #include "leeway/filters/ekf.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "cholesky.hpp"
 #include "leeway/error.hpp"
 #include "leeway/filters/chi_square.hpp"
 #include "leeway/filters/gnss_measurement.hpp"
@@ -91,7 +91,7 @@ void held_scalar_update(Matrix& P, Vector& x, const Vector& h, double z, const H
 }
 
 double nis_of(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& S) {
-  return innovation.dot(S.llt().solve(innovation));
+  return Cholesky<3>(S).normalized_square(innovation);
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ void Ekf::predict(const ImuIncrement& inc) {
 
   // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370
   // km.
-  if (Phi_.dt_s == 0.0) gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
+  if (covariance_is_current()) gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
 
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
 
@@ -161,27 +161,41 @@ void Ekf::coast(Time to) {
   P_.block<3, 3>(kDr, kDv).diagonal().array() += velocity_mps * position_m;
 }
 
+MeasurementMatrix Ekf::innovation_covariance(const Measurement& m) const {
+  MeasurementMatrix S = m.R;
+  for (int i = 0; i < m.rows(); ++i) {
+    const ErrorVector h = m.H.row(i);
+    ErrorVector Ph = P_ * h;
+    VehicleVector Ph_vehicle = VehicleVector::Zero();
+    if (estimates_vehicle_) {
+      const VehicleVector h_vehicle = m.H_vehicle.row(i);
+      Ph += vehicle_.cross * h_vehicle;
+      Ph_vehicle = vehicle_.cross.transpose() * h + vehicle_.P * h_vehicle;
+    }
+    for (int j = i; j < m.rows(); ++j) {
+      S(j, i) += m.H.row(j).dot(Ph) + m.H_vehicle.row(j).dot(Ph_vehicle);
+      S(i, j) = S(j, i);
+    }
+  }
+  return S;
+}
+
 UpdateReport Ekf::judge(const Measurement& m) {
   flush();
   UpdateReport report;
   report.time = estimate_.nav.time;
   report.dof = m.rows();
   report.gate = gate_[static_cast<std::size_t>(report.dof)];
-  using Matrix = decltype(m.R);
-  Matrix S = m.H * P_ * m.H.transpose() + m.R;
-  if (estimates_vehicle_) {
-    const Matrix crossed = m.H * vehicle_.cross * m.H_vehicle.transpose();
-    S += m.H_vehicle * vehicle_.P * m.H_vehicle.transpose() + crossed + crossed.transpose();
-  }
+  const MeasurementMatrix S = innovation_covariance(m);
   if (m.rows() == 6) {
     report.position_nis = nis_of(m.innovation.head<3>(), S.topLeftCorner<3, 3>());
     report.velocity_nis = nis_of(m.innovation.tail<3>(), S.bottomRightCorner<3, 3>());
   }
-  const Eigen::LLT<Matrix> S_llt(S);
-  report.covariance_positive = S_llt.info() == Eigen::Success;
+  const Cholesky<6> S_factor(S);
+  report.covariance_positive = S_factor.positive();
   if (!report.covariance_positive) return report;
-  report.nis = m.innovation.dot(S_llt.solve(m.innovation));
-  report.log_det_S = 2.0 * S_llt.matrixLLT().diagonal().array().log().sum();
+  report.nis = S_factor.normalized_square(m.innovation);
+  report.log_det_S = S_factor.log_det();
   report.outcome =
       report.nis <= report.gate ? UpdateReport::Outcome::kFused : UpdateReport::Outcome::kGated;
   return report;
@@ -190,12 +204,12 @@ UpdateReport Ekf::judge(const Measurement& m) {
 void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights, Held held) {
   const HeldDirections U = directions_of(held, estimate_);
   // Whitened by the Cholesky factor of R, the components are independent, of unit variance.
-  const Eigen::LLT<decltype(m.R)> R_llt(m.R);
-  const auto white_H = R_llt.matrixL().solve(m.H).eval();
-  const auto white_z = R_llt.matrixL().solve(m.innovation).eval();
+  const Cholesky<6> R_factor(m.R);
+  const auto white_H = R_factor.whitened(m.H);
+  const auto white_z = R_factor.whitened(m.innovation);
   ErrorVector x_hat = ErrorVector::Zero();
   if (estimates_vehicle_) {
-    const auto white_H_vehicle = R_llt.matrixL().solve(m.H_vehicle).eval();
+    const auto white_H_vehicle = R_factor.whitened(m.H_vehicle);
     JointMatrix P;
     P << P_, vehicle_.cross, vehicle_.cross.transpose(), vehicle_.P;
     JointVector x_joint = JointVector::Zero();
@@ -327,7 +341,7 @@ bool Ekf::is_sane() const {
 }
 
 bool Ekf::repair_covariance() {
-  if (Eigen::LLT<ErrorMatrix>(P_).info() == Eigen::Success) return true;
+  if (Cholesky<kErrorStates>(P_).positive()) return true;
   constexpr double kFloor = 1e-9;
   // Of the correlations, so that no state is small beside another for its unit alone.
   const ErrorVector sigma = P_.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-12);
@@ -354,7 +368,7 @@ ErrorMatrix Ekf::covariance() const {
 }
 
 void Ekf::flush() {
-  if (Phi_.dt_s == 0.0) return;
+  if (covariance_is_current()) return;
   propagate(P_, Phi_, noise_);
   if (estimates_vehicle_) {
     vehicle_.cross = transported(Phi_, vehicle_.cross);

@@ -92,7 +92,8 @@ void Fusion::integrate(const ImuIncrement& inc) {
   const bool rested = aiding_.at_rest();
   aiding_.push(in_body, *bank_);
   if (rested && !aiding_.at_rest()) open_heading();
-  guard_numbers();
+  // From numbers that were sound when P was last propagated, a few samples cannot reach infinity.
+  if (bank_->best().covariance_is_current()) guard_numbers();
 }
 
 void Fusion::open_heading() {

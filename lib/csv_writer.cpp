@@ -15,7 +15,7 @@
 namespace leeway {
 namespace {
 
-constexpr std::size_t kBufferBytes = 128 * 1024;
+constexpr std::size_t kWriteBufferBytes = 128 * 1024;
 constexpr std::size_t kMaxNumberBytes = 32;  // the longest shortest double has 24
 constexpr int kMaxDecimals = 12;
 constexpr double kMaxScaled = 9e18;  // fits a signed 64-bit integer
@@ -66,7 +66,7 @@ char* put_number(char* out, double value, int decimals) {
 void CsvWriter::Close::operator()(gzFile_s* file) const { gzclose_w(file); }
 
 CsvWriter::CsvWriter(const std::filesystem::path& path, std::initializer_list<CsvColumn> columns)
-    : path_(path), partial_(path), buffer_(kBufferBytes) {
+    : path_(path), partial_(path), buffer_(kWriteBufferBytes) {
   partial_ += ".partial";
   for (const CsvColumn& column : columns) {
     if (column.decimals > kMaxDecimals) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMinRadiusM = wgs84::kSemiMinorAxisM - 1e5;
 constexpr double kMaxRadiusM = wgs84::kSemiMajorAxisM + 1e5;
-constexpr double kMaxSpeedMps = 1e4;
+constexpr double kFastestMps = 1e4;
 constexpr double kSymmetryTolerance = 1e-9;  // relative; rotation into ECEF leaves 1e-16
 
 bool is_covariance(const Eigen::Matrix3d& R) {
@@ -40,7 +40,7 @@ bool is_usable(const GnssFix& fix) {
     if (!is_covariance(fix.position->R_e_m2)) return false;
   }
   if (fix.velocity) {
-    if (!(fix.velocity->v_e_mps.norm() < kMaxSpeedMps)) return false;
+    if (!(fix.velocity->v_e_mps.norm() < kFastestMps)) return false;
     if (!is_covariance(fix.velocity->R_e_m2ps2)) return false;
   }
   return true;

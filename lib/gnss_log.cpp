@@ -12,40 +12,32 @@
 #include "csv_header.hpp"
 #include "leeway/error.hpp"
 #include "leeway/rotation.hpp"
+#include "log_columns.hpp"
 #include "log_source.hpp"
 #include "rtklib_pos.hpp"
 
 namespace leeway {
 namespace {
 
-constexpr double kMaxSigma = 1e5;
-constexpr double kMaxHeightM = 1e5;
-constexpr double kMaxSpeedMps = 1e4;
-constexpr double kSmallest = std::numeric_limits<double>::min();
 constexpr std::size_t kKfGinsPositionFields = 7;
-constexpr std::size_t kKfGinsFields = 13;
+constexpr std::size_t kKfGinsFixFields = 13;
 constexpr std::size_t kSlots = 12;
 
-constexpr Column kTime{Column::kTime};
-constexpr Column sigma(int slot) { return {slot, kSmallest, kMaxSigma}; }
-constexpr Column velocity(int slot) { return {slot, -kMaxSpeedMps, kMaxSpeedMps, true}; }
-constexpr Column velocity_sigma(int slot) { return {slot, kSmallest, kMaxSigma, true}; }
-
-constexpr std::array kPositionColumns{NamedColumn{"t_s", kTime},
+constexpr std::array kPositionColumns{NamedColumn{"t_s", kTimeColumn},
                                       NamedColumn{"lat_deg", {0, -90.0, 90.0}},
                                       NamedColumn{"lon_deg", {1, -360.0, 360.0}},
                                       NamedColumn{"height_m", {2, -kMaxHeightM, kMaxHeightM}},
-                                      NamedColumn{"pos_std_n_m", sigma(3)},
-                                      NamedColumn{"pos_std_e_m", sigma(4)},
-                                      NamedColumn{"pos_std_d_m", sigma(5)}};
-constexpr std::array kVelocityColumns{NamedColumn{"vn_mps", velocity(6)},
-                                      NamedColumn{"ve_mps", velocity(7)},
-                                      NamedColumn{"vd_mps", velocity(8)},
-                                      NamedColumn{"vel_std_n_mps", velocity_sigma(9)},
-                                      NamedColumn{"vel_std_e_mps", velocity_sigma(10)},
-                                      NamedColumn{"vel_std_d_mps", velocity_sigma(11)}};
+                                      NamedColumn{"pos_std_n_m", sigma_column(3)},
+                                      NamedColumn{"pos_std_e_m", sigma_column(4)},
+                                      NamedColumn{"pos_std_d_m", sigma_column(5)}};
+constexpr std::array kVelocityColumns{NamedColumn{"vn_mps", velocity_column(6)},
+                                      NamedColumn{"ve_mps", velocity_column(7)},
+                                      NamedColumn{"vd_mps", velocity_column(8)},
+                                      NamedColumn{"vel_std_n_mps", sigma_column(9, true)},
+                                      NamedColumn{"vel_std_e_mps", sigma_column(10, true)},
+                                      NamedColumn{"vel_std_d_mps", sigma_column(11, true)}};
 
-std::string expected_layouts() {
+std::string gnss_layouts() {
   return "a CSV header with " + join(kPositionColumns) + " (and " + join(kVelocityColumns) +
          "), KF-GINS text (7 or 13 numbers separated by blanks), or RTKLIB .pos with its header";
 }
@@ -93,10 +85,10 @@ struct GnssRowParser {
   }
 };
 
-NedParser csv_parser(std::string_view line, const std::string& path) {
+NedParser gnss_csv_parser(std::string_view line, const std::string& path) {
   CsvHeader header(line, path);
   if (const auto missing = header.missing(kPositionColumns); !missing.empty()) {
-    throw Error(path + ": missing columns " + join(missing) + "; expected " + expected_layouts());
+    throw Error(path + ": missing columns " + join(missing) + "; expected " + gnss_layouts());
   }
   header.use(kPositionColumns);
   header.use_group(kVelocityColumns);
@@ -104,13 +96,13 @@ NedParser csv_parser(std::string_view line, const std::string& path) {
 }
 
 NedParser kf_gins_parser(std::size_t field_count, const std::string& path) {
-  if (field_count != kKfGinsPositionFields && field_count != kKfGinsFields) {
+  if (field_count != kKfGinsPositionFields && field_count != kKfGinsFixFields) {
     throw Error(path + ": " + std::to_string(field_count) +
-                " fields in a line without a header; expected " + expected_layouts());
+                " fields in a line without a header; expected " + gnss_layouts());
   }
   std::vector<Column> columns;
   for (const NamedColumn& named : kPositionColumns) columns.push_back(named.column);
-  if (field_count == kKfGinsFields) {
+  if (field_count == kKfGinsFixFields) {
     for (const NamedColumn& named : kVelocityColumns) columns.push_back(named.column);
   }
   return {{Separator::kRuns, std::move(columns)}, true};
@@ -142,12 +134,12 @@ GnssRowParser parser_for(LineReader& lines, const GnssLogOptions& options) {
   if (starts_with_comment_of_rtklib(lines)) {
     return {GnssLogFormat::kRtklib, options, rtklib_parser(lines)};
   }
-  const std::string_view line = first_line(lines, expected_layouts());
+  const std::string_view line = first_line(lines, gnss_layouts());
   const auto fields = split_fields(line, Separator::kRuns);
   if (is_number(fields.front()) && line.find(',') == std::string_view::npos) {
     return {GnssLogFormat::kKfGins, options, kf_gins_parser(fields.size(), lines.path())};
   }
-  GnssRowParser parser{GnssLogFormat::kCsv, options, csv_parser(line, lines.path())};
+  GnssRowParser parser{GnssLogFormat::kCsv, options, gnss_csv_parser(line, lines.path())};
   lines.next();  // the header
   return parser;
 }

@@ -3,12 +3,12 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "csv_header.hpp"
 #include "leeway/error.hpp"
+#include "log_columns.hpp"
 #include "log_source.hpp"
 
 namespace leeway {
@@ -17,28 +17,23 @@ namespace {
 constexpr double kMaxAngular = 1e3;
 constexpr double kMaxLinear = 1e5;
 constexpr double kMaxStepS = 3600.0;
-constexpr double kSmallest = std::numeric_limits<double>::min();
 constexpr double kRotationTolerance = 1e-6;
-constexpr std::size_t kKfGinsFields = 7;
+constexpr std::size_t kKfGinsImuFields = 7;
 
-constexpr Column kTime{Column::kTime};
 constexpr Column kStep{6, kSmallest, kMaxStepS};
 constexpr Column angular(int axis) { return {axis, -kMaxAngular, kMaxAngular}; }
 constexpr Column linear(int axis) { return {3 + axis, -kMaxLinear, kMaxLinear}; }
 
 constexpr std::array kRates{
-    NamedColumn{"t_s", kTime},           NamedColumn{"gx_radps", angular(0)},
+    NamedColumn{"t_s", kTimeColumn},     NamedColumn{"gx_radps", angular(0)},
     NamedColumn{"gy_radps", angular(1)}, NamedColumn{"gz_radps", angular(2)},
     NamedColumn{"ax_mps2", linear(0)},   NamedColumn{"ay_mps2", linear(1)},
     NamedColumn{"az_mps2", linear(2)}};
-constexpr std::array kIncrements{NamedColumn{"t_s", kTime},
-                                 NamedColumn{"dt_s", kStep},
-                                 NamedColumn{"dtheta_x_rad", angular(0)},
-                                 NamedColumn{"dtheta_y_rad", angular(1)},
-                                 NamedColumn{"dtheta_z_rad", angular(2)},
-                                 NamedColumn{"dv_x_mps", linear(0)},
-                                 NamedColumn{"dv_y_mps", linear(1)},
-                                 NamedColumn{"dv_z_mps", linear(2)}};
+constexpr std::array kIncrements{
+    NamedColumn{"t_s", kTimeColumn},         NamedColumn{"dt_s", kStep},
+    NamedColumn{"dtheta_x_rad", angular(0)}, NamedColumn{"dtheta_y_rad", angular(1)},
+    NamedColumn{"dtheta_z_rad", angular(2)}, NamedColumn{"dv_x_mps", linear(0)},
+    NamedColumn{"dv_y_mps", linear(1)},      NamedColumn{"dv_z_mps", linear(2)}};
 
 // One line, whatever the layout: rates or increments, dt_s only where the line has it.
 struct ImuRow {
@@ -64,12 +59,12 @@ struct ImuRowParser {
   }
 };
 
-std::string expected_layouts() {
+std::string imu_layouts() {
   return "a CSV header with " + join(kRates) + " (rates) or " + join(kIncrements) +
          " (increments), or KF-GINS text: seconds of week and 6 increments, separated by blanks";
 }
 
-ImuRowParser csv_parser(std::string_view line, const std::string& path) {
+ImuRowParser imu_csv_parser(std::string_view line, const std::string& path) {
   CsvHeader header(line, path);
   const bool increments = header.has(kIncrements);
   if (!increments && !header.has(kRates)) {
@@ -77,7 +72,7 @@ ImuRowParser csv_parser(std::string_view line, const std::string& path) {
     const auto no_increments = header.missing(kIncrements);
     throw Error(path + ": missing columns " +
                 join(no_rates.size() <= no_increments.size() ? no_rates : no_increments) +
-                "; expected " + expected_layouts());
+                "; expected " + imu_layouts());
   }
   if (increments) {
     header.use(kIncrements);
@@ -88,15 +83,16 @@ ImuRowParser csv_parser(std::string_view line, const std::string& path) {
 }
 
 ImuRowParser parser_for(LineReader& lines) {
-  const std::string_view line = first_line(lines, expected_layouts());
+  const std::string_view line = first_line(lines, imu_layouts());
   const auto fields = split_fields(line, Separator::kRuns);
   const bool has_header = !is_number(fields.front());
-  if (!has_header && fields.size() >= kKfGinsFields && line.find(',') == std::string_view::npos) {
+  if (!has_header && fields.size() >= kKfGinsImuFields &&
+      line.find(',') == std::string_view::npos) {
     return {ImuLogFormat::kKfGins,
             {Separator::kRuns,
-             {kTime, angular(0), angular(1), angular(2), linear(0), linear(1), linear(2)}}};
+             {kTimeColumn, angular(0), angular(1), angular(2), linear(0), linear(1), linear(2)}}};
   }
-  ImuRowParser parser = csv_parser(line, lines.path());
+  ImuRowParser parser = imu_csv_parser(line, lines.path());
   lines.next();  // the header
   return parser;
 }

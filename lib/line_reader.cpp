@@ -16,7 +16,7 @@ namespace {
 // corrupt stream costs is one such chunk.
 constexpr unsigned kZlibBufferBytes = 16 * 1024;
 constexpr unsigned kChunkBytes = 2 * kZlibBufferBytes;
-constexpr std::size_t kBufferBytes = 2 * LineReader::kMaxLineBytes;
+constexpr std::size_t kReadBufferBytes = 2 * LineReader::kMaxLineBytes;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
@@ -24,7 +24,7 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 void LineReader::Close::operator()(gzFile_s* file) const { gzclose_r(file); }
 
 LineReader::LineReader(const std::filesystem::path& path)
-    : path_(path.string()), buffer_(kBufferBytes) {
+    : path_(path.string()), buffer_(kReadBufferBytes) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error(path_ + ": is a directory, not a file");

@@ -13,6 +13,7 @@
 #include "csv_header.hpp"
 #include "leeway/error.hpp"
 #include "leeway/rotation.hpp"
+#include "log_columns.hpp"
 
 namespace leeway {
 namespace {
@@ -33,29 +34,24 @@ enum Slot {
   kVelocityCovariance = 15,
   kMinutes = 18,
   kSeconds = 20,
-  kSlots = 22
+  kRtklibSlots = 22
 };
 
-constexpr int kLastWeek = 15000;
-constexpr double kMaxSigma = 1e5;
-constexpr double kSmallest = std::numeric_limits<double>::min();
-
-constexpr Column sigma(int slot) { return {slot, kSmallest, kMaxSigma}; }
 constexpr Column optional(int slot) { return {slot, -kMaxSigma, kMaxSigma, true}; }
 constexpr Column coordinate(int slot, double limit) { return {slot, -limit, limit}; }
 
 constexpr std::array kGeodeticPosition{NamedColumn{"latitude", coordinate(kPosition, 90.0)},
                                        NamedColumn{"longitude", coordinate(kPosition + 1, 360.0)},
                                        NamedColumn{"height", coordinate(kPosition + 2, 1e5)},
-                                       NamedColumn{"sdn", sigma(kSigma)},
-                                       NamedColumn{"sde", sigma(kSigma + 1)},
-                                       NamedColumn{"sdu", sigma(kSigma + 2)}};
+                                       NamedColumn{"sdn", sigma_column(kSigma)},
+                                       NamedColumn{"sde", sigma_column(kSigma + 1)},
+                                       NamedColumn{"sdu", sigma_column(kSigma + 2)}};
 constexpr std::array kEcefPosition{NamedColumn{"x-ecef", coordinate(kPosition, 1e7)},
                                    NamedColumn{"y-ecef", coordinate(kPosition + 1, 1e7)},
                                    NamedColumn{"z-ecef", coordinate(kPosition + 2, 1e7)},
-                                   NamedColumn{"sdx", sigma(kSigma)},
-                                   NamedColumn{"sdy", sigma(kSigma + 1)},
-                                   NamedColumn{"sdz", sigma(kSigma + 2)}};
+                                   NamedColumn{"sdx", sigma_column(kSigma)},
+                                   NamedColumn{"sdy", sigma_column(kSigma + 1)},
+                                   NamedColumn{"sdz", sigma_column(kSigma + 2)}};
 
 // RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
 constexpr std::array kGeodeticRest{NamedColumn{"sdne", optional(kCovariance)},
@@ -181,7 +177,7 @@ std::optional<LineDamage> parse_day_or_week(const char*& p, const char* end, Dur
   p = after + 1;
   if (*after == '/') return parse_date(p, end, number, time);
   if (!is_separator(*after)) return LineDamage::kNotANumber;
-  if (number < 0 || number > kLastWeek) return LineDamage::kOutOfRange;
+  if (number < 0 || number > kLastGpsWeek) return LineDamage::kOutOfRange;
   time = std::chrono::weeks{number};
   return std::nullopt;
 }
@@ -234,7 +230,7 @@ void RtklibParser::read_columns(std::string_view line, const std::string& path) 
 
 std::optional<Fault> RtklibParser::operator()(std::string_view line, GnssFix& fix) const {
   if (auto fault = parse_epoch(line, fix.time)) return fault;
-  std::array<double, kSlots> values{};  // minutes and seconds stay zero where degrees are decimal
+  std::array<double, kRtklibSlots> values{};  // minutes and seconds stay zero where degrees are decimal
   std::fill(values.begin() + kCovariance, values.begin() + kMinutes,
             std::numeric_limits<double>::quiet_NaN());
   Time unused{};

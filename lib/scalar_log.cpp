@@ -6,6 +6,7 @@
 
 #include "csv_header.hpp"
 #include "leeway/error.hpp"
+#include "log_columns.hpp"
 #include "log_source.hpp"
 
 namespace leeway {
@@ -23,11 +24,10 @@ struct ScalarRowParser {
   }
 };
 
-ScalarRowParser parser_for(LineReader& lines, const ScalarColumns& columns) {
-  const std::array wanted{NamedColumn{"t_s", {Column::kTime}},
+ScalarRowParser scalar_parser(LineReader& lines, const ScalarColumns& columns) {
+  const std::array wanted{NamedColumn{"t_s", kTimeColumn},
                           NamedColumn{columns.value, {0, -columns.largest, columns.largest}}};
-  const std::array sigma{
-      NamedColumn{columns.sigma, {1, std::numeric_limits<double>::min(), columns.largest, true}}};
+  const std::array sigma{NamedColumn{columns.sigma, {1, kSmallest, columns.largest, true}}};
   const std::string expected = "a CSV header with " + join(wanted) + " (and " + join(sigma) + ")";
   CsvHeader header(first_line(lines, expected), lines.path());
   if (const auto missing = header.missing(wanted); !missing.empty()) {
@@ -47,7 +47,7 @@ struct ScalarLogReader::Impl {
 
 ScalarLogReader::ScalarLogReader(const std::filesystem::path& path, const ScalarColumns& columns) {
   LineReader lines(path);
-  ScalarRowParser parser = parser_for(lines, columns);
+  ScalarRowParser parser = scalar_parser(lines, columns);
   impl_ = std::make_unique<Impl>(
       Impl{LogSource<ScalarRecord, ScalarRowParser>(std::move(lines), std::move(parser))});
 }

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kLimitS = 9.2e9;
 constexpr double kWeekS = 604800.0;
-constexpr int kLastWeek = 15000;
 
 }  // namespace
 
@@ -27,7 +26,7 @@ Duration duration_from_seconds(double seconds) {
 Time time_from_seconds(double seconds) { return Time{duration_from_seconds(seconds)}; }
 
 Time time_from_gps(int week, double time_of_week_s) {
-  if (week < 0 || week > kLastWeek || !(time_of_week_s >= 0.0 && time_of_week_s <= kWeekS)) {
+  if (week < 0 || week > kLastGpsWeek || !(time_of_week_s >= 0.0 && time_of_week_s <= kWeekS)) {
     throw Error("GPS time week " + std::to_string(week) + ", " + std::to_string(time_of_week_s) +
                 " s: week must be 0 to 15000 and the time of week 0 to 604800 s");
   }

@@ -7,29 +7,27 @@
 
 #include "csv_header.hpp"
 #include "leeway/error.hpp"
+#include "log_columns.hpp"
 #include "log_source.hpp"
 
 namespace leeway {
 namespace {
 
-constexpr double kMaxHeightM = 1e5;
-constexpr double kMaxSpeedMps = 1e4;
 constexpr double kMaxAngleDeg = 720.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-constexpr Column velocity(int slot) { return {slot, -kMaxSpeedMps, kMaxSpeedMps, true}; }
 constexpr Column angle(int slot) { return {slot, -kMaxAngleDeg, kMaxAngleDeg, true}; }
 
-constexpr std::array kPosition{NamedColumn{"t_s", {Column::kTime}},
-                               NamedColumn{"lat_deg", {0, -90.0, 90.0}},
-                               NamedColumn{"lon_deg", {1, -360.0, 360.0}},
-                               NamedColumn{"height_m", {2, -kMaxHeightM, kMaxHeightM}}};
-constexpr std::array kVelocity{NamedColumn{"vn_mps", velocity(3)},
-                               NamedColumn{"ve_mps", velocity(4)},
-                               NamedColumn{"vd_mps", velocity(5)}};
-constexpr std::array kAttitude{NamedColumn{"roll_deg", angle(6)},
-                               NamedColumn{"pitch_deg", angle(7)},
-                               NamedColumn{"yaw_deg", angle(8)}};
+constexpr std::array kTruthPosition{NamedColumn{"t_s", kTimeColumn},
+                                    NamedColumn{"lat_deg", {0, -90.0, 90.0}},
+                                    NamedColumn{"lon_deg", {1, -360.0, 360.0}},
+                                    NamedColumn{"height_m", {2, -kMaxHeightM, kMaxHeightM}}};
+constexpr std::array kTruthVelocity{NamedColumn{"vn_mps", velocity_column(3)},
+                                    NamedColumn{"ve_mps", velocity_column(4)},
+                                    NamedColumn{"vd_mps", velocity_column(5)}};
+constexpr std::array kTruthAttitude{NamedColumn{"roll_deg", angle(6)},
+                                    NamedColumn{"pitch_deg", angle(7)},
+                                    NamedColumn{"yaw_deg", angle(8)}};
 
 struct TruthRow {
   Time time{};
@@ -59,16 +57,16 @@ struct TruthRowParser {
   }
 };
 
-TruthRowParser parser_for(LineReader& lines) {
-  const std::string expected = "a CSV header with " + join(kPosition) + " (and " + join(kVelocity) +
-                               ", " + join(kAttitude) + ")";
+TruthRowParser truth_parser(LineReader& lines) {
+  const std::string expected = "a CSV header with " + join(kTruthPosition) + " (and " +
+                               join(kTruthVelocity) + ", " + join(kTruthAttitude) + ")";
   CsvHeader header(first_line(lines, expected), lines.path());
-  if (const auto missing = header.missing(kPosition); !missing.empty()) {
+  if (const auto missing = header.missing(kTruthPosition); !missing.empty()) {
     throw Error(lines.path() + ": missing columns " + join(missing) + "; expected " + expected);
   }
-  header.use(kPosition);
-  header.use_group(kVelocity);
-  header.use_group(kAttitude);
+  header.use(kTruthPosition);
+  header.use_group(kTruthVelocity);
+  header.use_group(kTruthAttitude);
   lines.next();  // the header
   return {header.parser()};
 }
@@ -108,7 +106,7 @@ struct TruthLogReader::Impl {
 
 TruthLogReader::TruthLogReader(const std::filesystem::path& path) {
   LineReader lines(path);
-  TruthRowParser parser = parser_for(lines);
+  TruthRowParser parser = truth_parser(lines);
   impl_ = std::make_unique<Impl>(
       Impl{LogSource<TruthRow, TruthRowParser>(std::move(lines), std::move(parser))});
 }

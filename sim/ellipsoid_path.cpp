@@ -14,8 +14,8 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kA = wgs84::kSemiMajorAxisM;
-constexpr double kB = wgs84::kSemiMinorAxisM;
+constexpr double kEquatorM = wgs84::kSemiMajorAxisM;
+constexpr double kPoleM = wgs84::kSemiMinorAxisM;
 constexpr double kShortestLegM = 0.1;
 constexpr double kLongestLegM = 9e6;
 constexpr double kSharpestTurnRad = 150.0 * kRadPerDeg;
@@ -33,16 +33,18 @@ template <class... Parts>
 /// The point of the unit sphere that is stretched to the ellipsoid's point with this normal.
 Eigen::Vector3d sphere_point(const Geodetic& position) {
   const double cos_lat = std::cos(position.lat_rad);
-  return Eigen::Vector3d(kA * cos_lat * std::cos(position.lon_rad),
-                         kA * cos_lat * std::sin(position.lon_rad), kB * std::sin(position.lat_rad))
+  return Eigen::Vector3d(kEquatorM * cos_lat * std::cos(position.lon_rad),
+                         kEquatorM * cos_lat * std::sin(position.lon_rad),
+                         kPoleM * std::sin(position.lat_rad))
       .normalized();
 }
 
 /// Mean over all directions, nearly, of what a unit of the sphere measures on the ground.
 double ground_radius_m(const Geodetic& position) {
   const double z = sphere_point(position).z();
-  const double meridian_m = std::sqrt(kA * kA * z * z + kB * kB * (1.0 - z * z));
-  return 0.5 * (kA + meridian_m) + position.height_m;
+  const double meridian_m =
+      std::sqrt(kEquatorM * kEquatorM * z * z + kPoleM * kPoleM * (1.0 - z * z));
+  return 0.5 * (kEquatorM + meridian_m) + position.height_m;
 }
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -221,7 +223,8 @@ JetVector EllipsoidPath::on_sphere(const Jet& s_m, std::size_t k) const {
   x = x / radius_m_;
   y = y / radius_m_;
   const CosineAndSinc turned(x * x + y * y);
-  return turned.cosine * node.up + turned.sinc * (x * node.ahead + y * node.right);
+  return scaled(node.up, turned.cosine) +
+         turned.sinc * (scaled(node.ahead, x) + scaled(node.right, y));
 }
 
 Jet EllipsoidPath::height_m(const Jet& s_m) const {
@@ -249,8 +252,9 @@ PathPoint EllipsoidPath::at(double distance_m) const {
   const Jet s_m = time_jet(distance_m);
   const JetVector u = on_sphere(s_m, k);
   PathPoint point;
-  point.up_e = normalized({u.x / kA, u.y / kA, u.z / kB});
-  point.position_e_m = JetVector{kA * u.x, kA * u.y, kB * u.z} + height_m(s_m) * point.up_e;
+  point.up_e = normalized({u.x / kEquatorM, u.y / kEquatorM, u.z / kPoleM});
+  point.position_e_m =
+      JetVector{kEquatorM * u.x, kEquatorM * u.y, kPoleM * u.z} + height_m(s_m) * point.up_e;
   point.curvature_per_m = curvature_per_m(s_m, k);
   return point;
 }

@@ -26,7 +26,8 @@ inline JetVector operator*(const Jet& scale, const JetVector& a) {
   return {scale * a.x, scale * a.y, scale * a.z};
 }
 
-inline JetVector operator*(const Jet& scale, const Eigen::Vector3d& a) {
+/// By a name: an operator would be one for a plain number too, as Eigen's is.
+inline JetVector scaled(const Eigen::Vector3d& a, const Jet& scale) {
   return {scale * a.x(), scale * a.y(), scale * a.z()};
 }
 

@@ -321,6 +321,8 @@ class Replay {
       const EulerAngles mount = euler_from_rotation(*navigator_.C_bs());
       result_.mount_rpy_deg =
           Eigen::Vector3d(mount.roll_rad, mount.pitch_rad, mount.yaw_rad) / kRadPerDeg;
+      // As --mount takes it: a yaw of -90 deg is not one of 270.
+      result_.mount_rpy_deg->z() = std::remainder(result_.mount_rpy_deg->z(), 360.0);
     }
     if (navigator_.aligned()) {
       result_.final_roll_deg =

@@ -34,7 +34,7 @@ constexpr Quantity kGateProbability{"gate_probability", {}, zero_or(1e-15, 0.1)}
 constexpr Quantity kCovarianceInterval{"covariance_interval", kTimes, zero_or(1e-4, 10.0)};
 constexpr Quantity kGnssCorrelation{"gnss_correlation", kTimes, zero_or(0.1, 1e5)};
 constexpr Quantity kTilt{"tilt", kAngles, zero_or(1e-7, 30.0 * kRadPerDeg)};
-constexpr Quantity kHeading{"heading", kAngles, zero_or(1e-7, 180.0 * kRadPerDeg)};
+constexpr Quantity kInitialHeading{"heading", kAngles, zero_or(1e-7, 180.0 * kRadPerDeg)};
 constexpr Quantity kInitialVelocity{"velocity", kSpeeds, zero_or(1e-4, 100.0)};
 constexpr Quantity kInitialPosition{"position", kLengths, zero_or(1e-3, 1e5)};
 constexpr Quantity kLast{"last", kTimes, between(1.0, kLongestSceneS)};
@@ -231,7 +231,7 @@ void read_filter(TomlSection& section, EkfConfig& filter) {
 InitialSigma read_initial(TomlSection& section) {
   InitialSigma sigma;
   sigma.tilt_rad = section.required(section.number(kTilt));
-  sigma.heading_rad = section.required(section.number(kHeading));
+  sigma.heading_rad = section.required(section.number(kInitialHeading));
   sigma.velocity_mps = section.required(section.number(kInitialVelocity));
   sigma.position_m = section.required(section.number(kInitialPosition));
   return sigma;

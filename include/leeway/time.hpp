@@ -19,8 +19,10 @@ using Time = std::chrono::time_point<NavClock, Duration>;
 Duration duration_from_seconds(double seconds);
 Time time_from_seconds(double seconds);
 
+inline constexpr int kLastGpsWeek = 15000;  ///< of those that are taken for one
+
 /// GPS time from week number (not rolled over) and seconds of week.
-/// @throws Error unless 0 <= week <= 15000 and 0 <= time_of_week_s <= 604800.
+/// @throws Error unless 0 <= week <= kLastGpsWeek and 0 <= time_of_week_s <= 604800.
 Time time_from_gps(int week, double time_of_week_s);
 
 /// Correctly rounded within 104 days of zero: whole seconds are whole.

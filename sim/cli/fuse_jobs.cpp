@@ -177,7 +177,7 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
   config.filter.imu = imu;
   config.filter.strapdown.scheme = static_cast<Scheme>(index_of(scheme_names(), options.scheme));
   if (options.lever_arm_b_m) config.filter.lever_arm_b_m = *options.lever_arm_b_m;
-  Navigator{config};
+  static_cast<void>(Navigator(config));  // refuses what cannot be
   return config;
 }
 

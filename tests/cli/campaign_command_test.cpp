@@ -126,7 +126,8 @@ TEST_CASE("the same bytes on any number of threads and ranks") {
   CHECK(leeway(campaign(30) + "--threads 2 --json", mpirun(2)).out == one);
 }
 
-TEST_CASE("killed half-way, a campaign goes on from its finished trials, losing none") {
+TEST_CASE("killed half-way, a campaign goes on from its finished trials, losing none" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   const std::string arguments = campaign(300) + "--threads 2 --journal " + quoted(dir / "journal");
   Child child(arguments);
@@ -220,14 +221,12 @@ TEST_CASE("options out of range, and a scene with nothing to score") {
   CHECK(contains(too_short.err, "two GNSS intervals"));
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which keeps freed memory
-TEST_CASE("ten times the trials take the same memory") {
+TEST_CASE("ten times the trials take the same memory" * doctest::test_suite("heavy")) {
   const auto peak_kib = [](int trials) {
     return Child(campaign(trials, 20) + "--threads 2").peak_memory_kib();
   };
   // Pages come and go; the 1800 scores of 160 bytes alone would be more.
   CHECK(peak_kib(2000) - peak_kib(200) < 256);
 }
-#endif
 
 }  // namespace leeway::test

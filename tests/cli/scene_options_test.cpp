@@ -11,12 +11,12 @@ namespace {
 
 const std::filesystem::path kScenes = LEEWAY_SCENES_DIR;
 
-std::string scene(const char* file) { return " --scene " + quoted(kScenes / file); }
+std::string ready(const char* file) { return " --scene " + quoted(kScenes / file); }
 
 /// What a command says of its scene. Two minutes at rest are enough for that.
 nlohmann::json input_of(const std::string& options) {
   const Outcome outcome =
-      leeway("analyze --json --at 120" + scene("static-45.toml") + " " + options);
+      leeway("analyze --json --at 120" + ready("static-45.toml") + " " + options);
   CAPTURE(options);
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit_code == 0);
@@ -58,7 +58,7 @@ TEST_CASE("the command line changes IMU, bias, metric, limit and interval of a s
 }
 
 TEST_CASE("what does not fit a scene is refused by its option") {
-  const std::string at_rest = scene("static-45.toml") + " --at 120 ";
+  const std::string at_rest = ready("static-45.toml") + " --at 120 ";
   CHECK(contains(refusal(""), "--scene"));
   CHECK(contains(refusal(" --scene none.toml"), "none.toml"));
   CHECK(contains(refusal(at_rest + "--imu tacticl"), "--imu tacticl: no class"));
@@ -70,7 +70,7 @@ TEST_CASE("what does not fit a scene is refused by its option") {
   CHECK(contains(refusal(at_rest + "--limit -3"), "--limit"));
   CHECK(contains(refusal(at_rest + "--at 0.1"), "--at"));
   // A route has an end.
-  CHECK(contains(refusal(scene("tunnel.toml") + " --at 5000"), "tunnel.toml:"));
+  CHECK(contains(refusal(ready("tunnel.toml") + " --at 5000"), "tunnel.toml:"));
 }
 
 TEST_CASE("simulate turns a scene into logs: outages left out, latency told") {
@@ -136,7 +136,7 @@ TEST_CASE("simulate wants either a scene or a trajectory") {
   const TempDir dir;
   const std::string out = " --out " + quoted(dir / "x");
   CHECK(contains(leeway("simulate" + out).err, "--scene FILE.toml or --trajectory NAME"));
-  const Outcome both = leeway("simulate --trajectory car" + scene("tunnel.toml") + out);
+  const Outcome both = leeway("simulate --trajectory car" + ready("tunnel.toml") + out);
   CHECK(both.exit_code == 1);
   CHECK(contains(both.err, "excludes"));
 }

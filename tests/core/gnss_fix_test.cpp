@@ -2,18 +2,17 @@
 
 #include <doctest/doctest.h>
 
-#include <limits>
-
 #include "leeway/rotation.hpp"
 #include "support/near.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway {
 namespace {
 
 using test::near;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInf;
+using test::kNan;
 
 const Geodetic kPlace{0.977, 1.62, 150.0};
 

@@ -4,19 +4,19 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include "leeway/error.hpp"
 #include "support/near.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway {
 namespace {
 
 using test::near;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInf;
+using test::kNan;
 
 /// Transition and noise covariance of (b, integral of b) over a step.
 struct Moments {

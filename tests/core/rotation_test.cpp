@@ -16,12 +16,24 @@ using test::near;
 using LongMatrix = Eigen::Matrix<long double, 3, 3>;
 using LongQuaternion = Eigen::Quaternion<long double>;
 
-constexpr double kPi = std::numbers::pi;
-
 // Both sides of every switch from series to closed form: 0.01 and 0.02 rad in sinc (of the angle
 // and of its half), 0.04 rad in the versine, 0.5 rad in the Jacobian.
-constexpr std::array kAngles{0.0,   1e-12, 1e-9,   1e-4,   9.99e-3, 1.001e-2, 1.999e-2,   2.001e-2,
-                             0.039, 0.041, 0.4999, 0.5001, 1.0,     2.5,      kPi - 1e-9, kPi};
+constexpr std::array kAngles{0.0,
+                             1e-12,
+                             1e-9,
+                             1e-4,
+                             9.99e-3,
+                             1.001e-2,
+                             1.999e-2,
+                             2.001e-2,
+                             0.039,
+                             0.041,
+                             0.4999,
+                             0.5001,
+                             1.0,
+                             2.5,
+                             std::numbers::pi - 1e-9,
+                             std::numbers::pi};
 
 const Eigen::Vector3d kAxes[] = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ(),
                                  Eigen::Vector3d(2.0, -3.0, 6.0) / 7.0,
@@ -77,17 +89,18 @@ TEST_CASE("log_quaternion inverts exp_quaternion and does not mind the sign of q
       const Eigen::Quaterniond minus_q(-q.w(), -q.x(), -q.y(), -q.z());
       // 4 ulp of the angle: two roundings each way. At pi either direction is right.
       const double tolerance = 9e-16 * angle;
-      if (angle < kPi) {
+      if (angle < std::numbers::pi) {
         CHECK(near(log_quaternion(q), phi, tolerance));
         CHECK(near(log_quaternion(minus_q), phi, tolerance));
       } else {
-        CHECK(near(log_quaternion(q).norm(), kPi, tolerance));
+        CHECK(near(log_quaternion(q).norm(), std::numbers::pi, tolerance));
         CHECK(near(log_quaternion(q).cross(phi).norm(), 0.0, 1e-14));
       }
     }
   }
   CHECK(log_quaternion(Eigen::Quaterniond::Identity()) == Eigen::Vector3d::Zero());
-  CHECK(near(log_quaternion(exp_quaternion({0.0, 0.0, 4.0})).z(), 4.0 - 2.0 * kPi, 2e-15));
+  CHECK(near(log_quaternion(exp_quaternion({0.0, 0.0, 4.0})).z(), 4.0 - 2.0 * std::numbers::pi,
+             2e-15));
 }
 
 TEST_CASE("exp_rotation is the power series of the matrix exponential") {
@@ -102,7 +115,8 @@ TEST_CASE("exp_rotation is the power series of the matrix exponential") {
 
 TEST_CASE("log_rotation returns the vector of Eigen's angle and axis, close to pi too") {
   for (const Eigen::Vector3d& axis : kAxes) {
-    for (const double angle : {1e-9, 1e-4, 0.5, 2.0, 3.0, kPi - 1e-4, kPi - 1e-9}) {
+    for (const double angle :
+         {1e-9, 1e-4, 0.5, 2.0, 3.0, std::numbers::pi - 1e-4, std::numbers::pi - 1e-9}) {
       CAPTURE(angle);
       const Eigen::Matrix3d C = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
       // rad: the elements of C carry 1 ulp, and the angle is read from the larger ones.
@@ -212,7 +226,7 @@ TEST_CASE("Euler angles come back, all round and up to pitch +-90 deg") {
         const double spread = 1e-15 / std::max(std::cos(in.pitch_rad), 1e-8);
         CHECK(near(rotation_from_euler(out), C, 2e-15));
         CHECK(near(out.pitch_rad, in.pitch_rad, 1e-15));
-        CHECK((out.yaw_rad >= 0.0 && out.yaw_rad < 2.0 * kPi));
+        CHECK((out.yaw_rad >= 0.0 && out.yaw_rad < 2.0 * std::numbers::pi));
         if (std::abs(pitch_deg) < 90.0) {
           CHECK(near(wrap_pi(out.roll_rad - in.roll_rad), 0.0, spread));
           CHECK(near(wrap_pi(out.yaw_rad - in.yaw_rad), 0.0, spread));
@@ -226,16 +240,16 @@ TEST_CASE("Euler angles come back, all round and up to pitch +-90 deg") {
 
 TEST_CASE("a yaw a hair below zero stays below a full turn") {
   const EulerAngles out = euler_from_rotation(rotation_from_euler({0.0, 0.0, -1e-18}));
-  CHECK(out.yaw_rad < 2.0 * kPi);
+  CHECK(out.yaw_rad < 2.0 * std::numbers::pi);
   CHECK(out.yaw_rad > 6.28);
 }
 
 TEST_CASE("wrap_pi keeps angles in (-pi, pi]") {
   CHECK(wrap_pi(0.25) == 0.25);
-  CHECK(wrap_pi(kPi) == kPi);
-  CHECK(wrap_pi(-kPi) == kPi);
-  CHECK(near(wrap_pi(3.5 * kPi), -0.5 * kPi, 2e-15));
-  CHECK(near(wrap_pi(-100.0 * kPi + 0.1), 0.1, 6e-14));  // ulp(314) = 5.7e-14
+  CHECK(wrap_pi(std::numbers::pi) == std::numbers::pi);
+  CHECK(wrap_pi(-std::numbers::pi) == std::numbers::pi);
+  CHECK(near(wrap_pi(3.5 * std::numbers::pi), -0.5 * std::numbers::pi, 2e-15));
+  CHECK(near(wrap_pi(-100.0 * std::numbers::pi + 0.1), 0.1, 6e-14));  // ulp(314) = 5.7e-14
 }
 
 }  // namespace leeway

@@ -164,7 +164,8 @@ TEST_CASE("never before the minimum speed, nor without position, nor across a ho
   CHECK_FALSE(run(10.0, 3.0, true));
 }
 
-TEST_CASE("five minutes at a standstill with unknown heading, then a drive: seeds 1 to 20") {
+TEST_CASE("five minutes at a standstill with unknown heading, then a drive: seeds 1 to 20" *
+          doctest::test_suite("heavy")) {
   const sim::Trajectory drive = sim::car_drive({.initial_rest_s = 300.0, .duration_s = 360.0});
   const auto truth = sim::true_increments(drive, 50.0, 360.0);
   const EkfConfig filter;

@@ -21,6 +21,7 @@
 namespace leeway {
 namespace {
 
+using test::at_equator;
 using test::near;
 using Outcome = UpdateReport::Outcome;
 
@@ -33,12 +34,6 @@ EkfConfig plain_config() {
 }
 
 /// At rest on the equator at t = 0, body axes along ECEF.
-Estimate at_equator() {
-  Estimate e;
-  e.nav.r_e_m = {wgs84::kSemiMajorAxisM, 0.0, 0.0};
-  return e;
-}
-
 ErrorMatrix diagonal_covariance(double psi, double dv, double dr, double b_a, double b_g) {
   return test::jacobian_steps(psi, dv, dr, b_a, b_g).cwiseAbs2().asDiagonal();
 }

@@ -14,8 +14,6 @@ namespace {
 using test::near;
 using test::random_estimate;
 
-constexpr double kPi = std::numbers::pi;
-
 ErrorVector random_error(std::uint64_t seed, double angle_rad) {
   sim::Random random(seed, 1);
   ErrorVector x;
@@ -35,7 +33,8 @@ void check_near(const ErrorVector& a, const ErrorVector& b) {
 }  // namespace
 
 TEST_CASE("difference undoes inject, from zero to pi") {
-  for (const double angle_rad : {0.0, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 3.0, kPi - 1e-4, kPi - 1e-8}) {
+  for (const double angle_rad :
+       {0.0, 1e-12, 1e-8, 1e-4, 0.1, 1.0, 3.0, std::numbers::pi - 1e-4, std::numbers::pi - 1e-8}) {
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
       CAPTURE(angle_rad);
       CAPTURE(seed);
@@ -56,7 +55,7 @@ TEST_CASE("signs: x = truth - estimate, C_eb(true) = exp([psi_e x]) C_eb(estimat
   const Eigen::Matrix3d C_eb = estimate.nav.q_eb.toRotationMatrix();
   // A right-handed quarter turn about the Earth's axis takes x_e to y_e.
   ErrorVector x = ErrorVector::Zero();
-  x(kPsi + 2) = 0.5 * kPi;
+  x(kPsi + 2) = 0.5 * std::numbers::pi;
   x(kDv) = 1.0;
   x(kDr + 1) = 2.0;
   x(kBa + 2) = 3.0;
@@ -82,7 +81,8 @@ TEST_CASE("the attitude error does not see the sign of the quaternion") {
 
 TEST_CASE("reset Jacobian against central differences through inject and difference") {
   const ErrorVector steps = test::jacobian_steps(3e-3, 1.0, 1000.0, 1.0, 1.0);
-  for (const double angle_rad : {0.0, 1e-10, 1e-5, 0.01, 0.3, 1.0, 2.0, 3.0, kPi - 1e-6}) {
+  for (const double angle_rad :
+       {0.0, 1e-10, 1e-5, 0.01, 0.3, 1.0, 2.0, 3.0, std::numbers::pi - 1e-6}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       CAPTURE(angle_rad);
       CAPTURE(seed);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "filters/random_state.hpp"
@@ -18,17 +19,9 @@
 namespace leeway {
 namespace {
 
+using test::at_equator;
 using test::near;
 using Outcome = UpdateReport::Outcome;
-
-constexpr double kPi = 180.0 * kRadPerDeg;
-
-/// At rest on the equator, body axes along ECEF: x is up.
-Estimate at_equator() {
-  Estimate e;
-  e.nav.r_e_m = {wgs84::kSemiMajorAxisM, 0.0, 0.0};
-  return e;
-}
 
 ErrorMatrix diagonal_covariance() {
   return test::jacobian_steps(0.01, 0.1, 2.0, 0.05, 0.001).cwiseAbs2().asDiagonal();
@@ -81,12 +74,13 @@ TEST_CASE("one filter up to 15 deg, twelve for the circle, and the sigma asked f
     const double expected_rad = std::hypot(c.sigma_deg * kRadPerDeg, 0.01, offset_rad);
     CHECK(near(sigma_rad / expected_rad, 1.0, 0.03));
   }
-  for (const double sigma_rad : {HeadingBank::kWholeCircleRad, kPi, 1e9}) {
+  for (const double sigma_rad : {HeadingBank::kWholeCircleRad, std::numbers::pi, 1e9}) {
     const HeadingBank bank = bank_of(sigma_rad);
     CHECK(bank.count() == 12);
     CHECK(near(bank.best_weight(), 1.0 / 12.0, 1e-15));
     // Uniform on the circle: pi / sqrt(3) = 104 deg.
-    CHECK(near(turn_sigma_rad(bank.covariance(), kUp), kPi / std::sqrt(3.0), 2.0 * kRadPerDeg));
+    CHECK(near(turn_sigma_rad(bank.covariance(), kUp), std::numbers::pi / std::sqrt(3.0),
+               2.0 * kRadPerDeg));
   }
 }
 
@@ -96,7 +90,7 @@ TEST_CASE("members turn about the antenna, and the levelling error turns along")
   ErrorMatrix P = diagonal_covariance();
   // An accelerometer bias about body z that levelling took for a tilt.
   P(kPsi + 1, kBa + 2) = P(kBa + 2, kPsi + 1) = 0.9 * 0.01 * 0.05;
-  HeadingBank bank(config, at_equator(), P, kUp, kPi);
+  HeadingBank bank(config, at_equator(), P, kUp, std::numbers::pi);
   const Eigen::Vector3d antenna_e_m = antenna_position_e(at_equator(), config.lever_arm_b_m);
   int members = 0;
   bank.for_each([&](Ekf& filter) {
@@ -116,7 +110,7 @@ TEST_CASE("members turn about the antenna, and the levelling error turns along")
 }
 
 TEST_CASE("two members in closed form: weights by likelihood, covariance within plus spread") {
-  HeadingBank bank = bank_of(kPi);
+  HeadingBank bank = bank_of(std::numbers::pi);
   // Of twelve at +-15, +-45, .. +-165 deg two are left: the rest cannot be.
   bank.update(reporting([](double turn_rad) {
     return std::abs(std::abs(turn_rad) - 75.0 * kRadPerDeg) < 0.1 ? 3.0 : 900.0;
@@ -146,7 +140,7 @@ TEST_CASE("two members in closed form: weights by likelihood, covariance within 
 
 TEST_CASE("measurements close in time repeat each other: their evidence counts in part") {
   const auto unequal = reporting([](double turn_rad) { return turn_rad > 0.0 ? 3.0 : 6.0; });
-  HeadingBank once = bank_of(kPi);
+  HeadingBank once = bank_of(std::numbers::pi);
   once.update(unequal);
   CHECK(near(once.best_weight(), 1.0 / 6.0 / (1.0 + std::exp(-0.5)), 1e-12));
   HeadingBank often = once;
@@ -163,7 +157,7 @@ TEST_CASE("measurements close in time repeat each other: their evidence counts i
 }
 
 TEST_CASE("an outlier that all refuse decides nothing; a member that is not a number goes") {
-  HeadingBank bank = bank_of(kPi);
+  HeadingBank bank = bank_of(std::numbers::pi);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const UpdateReport report =
       bank.update(reporting([](double turn_rad) { return 5e3 + 1e3 * turn_rad; }));
@@ -221,9 +215,9 @@ TEST_CASE("at rest heading stays unknown: ten minutes do not make a false choice
       start.nav.q_eb = exp_quaternion(error_rad * down_e) * start.nav.q_eb;
       const double tilt_rad = c.imu.accelerometer.bias_sigma / kStandardGravityMps2;
       const ErrorMatrix P = initial_covariance(start, {tilt_rad, 0.0, 0.1, 4.0}, c.imu);
-      HeadingBank bank(config, start, P, down_e, kPi);
+      HeadingBank bank(config, start, P, down_e, std::numbers::pi);
       std::size_t next = 0;
-      double least_rad = kPi;
+      double least_rad = std::numbers::pi;
       for (const ImuIncrement& inc : log.imu) {
         bank.for_each([&](Ekf& filter) { filter.predict(inc); });
         if (next == log.fixes.size() || log.fixes[next].time != inc.time) continue;
@@ -251,7 +245,7 @@ TEST_CASE("same inputs, same bits; a copy goes its own way") {
   const EkfConfig config;
   const Eigen::Vector3d down_e = ned_to_ecef(sim::kDefaultOrigin).col(2);
   const ErrorMatrix P = initial_covariance(start, {0.03, 0.0, 0.1, 3.0}, config.imu);
-  HeadingBank a(config, start, P, down_e, kPi);
+  HeadingBank a(config, start, P, down_e, std::numbers::pi);
   HeadingBank b = a;
   const auto run = [&](HeadingBank& bank) {
     std::size_t next = 0;

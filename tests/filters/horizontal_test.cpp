@@ -17,7 +17,7 @@ namespace {
 
 using test::near;
 
-constexpr std::array kProbabilities{0.5, 0.6827, 0.9, 0.95, 0.99, 0.9999};
+constexpr std::array kShares{0.5, 0.6827, 0.9, 0.95, 0.99, 0.9999};
 constexpr std::array kAxisRatios{1.0,  1.001, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0,
                                  20.0, 50.0,  1e2, 1e3, 1e4, 1e6, 1e8};
 
@@ -48,7 +48,7 @@ double probability_within(double major_m, double minor_m, double r) {
 
 TEST_CASE("radius: a circular error is Rayleigh distributed") {
   for (const double sigma_m : {1e-3, 1.0, 4e5}) {
-    for (const double p : kProbabilities) {
+    for (const double p : kShares) {
       CAPTURE(p);
       const double expected_m = sigma_m * std::sqrt(-2.0 * std::log1p(-p));
       CHECK(
@@ -58,7 +58,7 @@ TEST_CASE("radius: a circular error is Rayleigh distributed") {
 }
 
 TEST_CASE("radius: an error along one line is normal") {
-  for (const double p : kProbabilities) {
+  for (const double p : kShares) {
     CAPTURE(p);
     const double r = horizontal_radius_m(ellipse(1.0, 0.0, 0.7), p);
     // dp = pdf dr: the probability of the radius found, within 1e-9 of the radius.
@@ -72,7 +72,7 @@ TEST_CASE("radius: an error along one line is normal") {
 TEST_CASE("radius: any ellipse against an independent integration, to 1e-9") {
   double worst = 0.0;
   for (const double ratio : kAxisRatios) {
-    for (const double p : kProbabilities) {
+    for (const double p : kShares) {
       CAPTURE(ratio);
       CAPTURE(p);
       const double r = horizontal_radius_m(ellipse(1.0, 1.0 / ratio, 0.4), p);
@@ -107,7 +107,7 @@ TEST_CASE("radius: counted, of half a million errors for each of seeds 1 to 3") 
 
 TEST_CASE("radius and the probability beyond it are inverse to each other") {
   for (const double ratio : kAxisRatios) {
-    for (const double p : kProbabilities) {
+    for (const double p : kShares) {
       CAPTURE(ratio);
       CAPTURE(p);
       const Eigen::Matrix2d P = ellipse(7.0, 7.0 / ratio, 2.0);

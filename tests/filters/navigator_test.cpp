@@ -3,14 +3,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "filters/recording.hpp"
+#include "filters/same_bits.hpp"
 #include "leeway/error.hpp"
 #include "support/near.hpp"
+#include "support/numbers.hpp"
 #include "support/temp_dir.hpp"
 
 namespace leeway {
@@ -18,8 +19,9 @@ namespace {
 
 using test::near;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using test::kInf;
+using test::kNan;
+using test::same_bits;
 
 /// A circle at 20 m/s for a minute, 100 Hz, fixes every second from t = 0.5 s on: on samples.
 const sim::Trajectory& trajectory() {
@@ -60,15 +62,6 @@ void run(Navigator& navigator, double from_s, double to_s, F&& disturb) {
 
 void run(Navigator& navigator, double from_s, double to_s) {
   run(navigator, from_s, to_s, [](const ImuIncrement&) {});
-}
-
-bool same_bits(const Navigator& a, const Navigator& b) {
-  const Estimate& x = a.filter().estimate();
-  const Estimate& y = b.filter().estimate();
-  return x.nav.time == y.nav.time && x.nav.q_eb.coeffs() == y.nav.q_eb.coeffs() &&
-         x.nav.v_e_mps == y.nav.v_e_mps && x.nav.r_e_m == y.nav.r_e_m &&
-         x.bias.b_a_mps2 == y.bias.b_a_mps2 && x.bias.b_g_radps == y.bias.b_g_radps &&
-         a.filter().covariance() == b.filter().covariance();
 }
 
 double horizontal_error_m(const Navigator& navigator) {

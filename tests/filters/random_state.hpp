@@ -14,6 +14,13 @@
 
 namespace leeway::test {
 
+/// At rest on the equator, body axes along ECEF: x is up.
+inline Estimate at_equator() {
+  Estimate e;
+  e.nav.r_e_m = {wgs84::kSemiMajorAxisM, 0.0, 0.0};
+  return e;
+}
+
 inline Eigen::Vector3d random_vector(sim::Random& random, double max_norm) {
   return max_norm * random.uniform() * random.normal3().normalized();
 }

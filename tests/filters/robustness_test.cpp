@@ -6,17 +6,17 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "filters/recording.hpp"
 #include "leeway/filters/navigator.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway {
 namespace {
 
 constexpr double kRateHz = 100.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kNan;
 constexpr Duration kWeek = std::chrono::hours{7 * 24};
 
 const sim::Trajectory& loop() {

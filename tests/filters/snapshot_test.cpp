@@ -18,7 +18,7 @@ namespace {
 using test::bytes_of;
 using test::same_bits;
 
-NavigatorConfig car_config() {
+NavigatorConfig seeking_mount() {
   NavigatorConfig config;
   config.C_bs.reset();
   config.vehicle = VehicleConfig::car();
@@ -32,7 +32,7 @@ const test::CarLog& log() {
 }
 
 /// From one time to another: fixes 0.7 s late, odometer and height on time.
-void run(Navigator& navigator, double from_s, double to_s) {
+void drive_on(Navigator& navigator, double from_s, double to_s) {
   const Time from = time_from_seconds(from_s);
   const auto first_after = [&](const auto& messages, double late_s) {
     std::size_t k = 0;
@@ -70,23 +70,23 @@ Restore restore(Navigator& navigator, std::span<const std::byte> bytes) {
 TEST_CASE("a restored navigator goes on bit by bit as the one it was taken from") {
   // While it aligns, while headings are open, before and after the mount is known, in motion. The
   // times are amid an epoch, with fixes on their way.
-  Navigator original(car_config());
+  Navigator original(seeking_mount());
   double now_s = 0.0;
   for (const double at_s : {0.0, 0.31, 1.11, 16.3, 20.3, 40.3, 100.3}) {
     CAPTURE(at_s);
-    run(original, now_s, at_s);
+    drive_on(original, now_s, at_s);
     now_s = at_s;
     const std::vector<std::byte> bytes = bytes_of(original);
-    CHECK(bytes.size() == Navigator(car_config()).snapshot_size());
-    Navigator restored(car_config());
+    CHECK(bytes.size() == Navigator(seeking_mount()).snapshot_size());
+    Navigator restored(seeking_mount());
     CHECK(restore(restored, bytes) == Restore::kRestored);
     CHECK(restored.aligned() == original.aligned());
     CHECK(same_bits(restored, original));
     CHECK(same_everything(restored, original));
     Navigator other = original;
     const double span_s = at_s == 100.3 ? 60.0 : 10.0;
-    run(restored, at_s, at_s + span_s);
-    run(other, at_s, at_s + span_s);
+    drive_on(restored, at_s, at_s + span_s);
+    drive_on(other, at_s, at_s + span_s);
     CHECK(same_bits(restored, other));
     CHECK(same_everything(restored, other));
     for (std::size_t v = 0; v < kVerdicts; ++v) {
@@ -99,23 +99,23 @@ TEST_CASE("a restored navigator goes on bit by bit as the one it was taken from"
 }
 
 TEST_CASE("a navigator that is restored forgets what it was") {
-  Navigator original(car_config());
-  run(original, 0.0, 20.3);
-  Navigator used(car_config());
-  run(used, 0.0, 60.0);
+  Navigator original(seeking_mount());
+  drive_on(original, 0.0, 20.3);
+  Navigator used(seeking_mount());
+  drive_on(used, 0.0, 60.0);
   CHECK(restore(used, bytes_of(original)) == Restore::kRestored);
   CHECK(same_everything(used, original));
-  run(used, 20.3, 30.0);
-  run(original, 20.3, 30.0);
+  drive_on(used, 20.3, 30.0);
+  drive_on(original, 20.3, 30.0);
   CHECK(same_everything(used, original));
 }
 
 TEST_CASE("a flipped bit anywhere is refused, and nothing has changed") {
-  Navigator original(car_config());
-  run(original, 0.0, 25.3);
+  Navigator original(seeking_mount());
+  drive_on(original, 0.0, 25.3);
   const std::vector<std::byte> good = bytes_of(original);
-  Navigator navigator(car_config());
-  run(navigator, 0.0, 5.0);
+  Navigator navigator(seeking_mount());
+  drive_on(navigator, 0.0, 5.0);
   const std::vector<std::byte> before = bytes_of(navigator);
   std::vector<std::byte> bytes = good;
   int refused = 0;
@@ -153,10 +153,10 @@ TEST_CASE("a flipped bit anywhere is refused, and nothing has changed") {
 }
 
 TEST_CASE("cut off, too long, empty, and other bytes are refused") {
-  Navigator original(car_config());
-  run(original, 0.0, 2.3);
+  Navigator original(seeking_mount());
+  drive_on(original, 0.0, 2.3);
   const std::vector<std::byte> good = bytes_of(original);
-  Navigator navigator(car_config());
+  Navigator navigator(seeking_mount());
   const std::vector<std::byte> before = bytes_of(navigator);
   CHECK(restore(navigator, {}) == Restore::kNotASnapshot);
   CHECK(restore(navigator, std::span(good).first(27)) == Restore::kNotASnapshot);
@@ -190,12 +190,12 @@ TEST_CASE("of another configuration: refused whatever the difference") {
       {"gap", [](NavigatorConfig& c) { c.max_gap_s = 0.6; }},
       {"rates", [](NavigatorConfig& c) { c.rate_meaning = RateMeaning::kMean; }},
   };
-  Navigator original(car_config());
-  run(original, 0.0, 2.3);
+  Navigator original(seeking_mount());
+  drive_on(original, 0.0, 2.3);
   const std::vector<std::byte> bytes = bytes_of(original);
   for (const Case& c : cases) {
     CAPTURE(std::string(c.what));
-    NavigatorConfig config = car_config();
+    NavigatorConfig config = seeking_mount();
     c.change(config);
     Navigator navigator(config);
     const std::vector<std::byte> before = bytes_of(navigator);

@@ -46,8 +46,8 @@ bool second_block_at_rest(const ImuBlock& block, const Ekf& filter) {
 
 /// How often in a hundred seconds, the first five aside, the car is taken for resting.
 int times_at_rest(const sim::Trajectory& trajectory, std::uint64_t seed) {
-  constexpr double kRateHz = 50.0;
-  const auto log = test::record(trajectory, sim::true_increments(trajectory, kRateHz, 100.0),
+  constexpr double kSampleHz = 50.0;
+  const auto log = test::record(trajectory, sim::true_increments(trajectory, kSampleHz, 100.0),
                                 automotive_mems_model(), {}, 0.5, 0.5, seed);
   NavigatorConfig config;
   config.vehicle = VehicleConfig::car();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "filters/settled.hpp"
@@ -13,6 +12,7 @@
 #include "leeway/imu_class.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "support/near.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway {
 namespace {
@@ -25,8 +25,8 @@ using test::present;
 using test::radius;
 using test::Settled;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using test::kInf;
+using test::kNan;
 
 /// A filter that starts where the trajectory does, and what it will measure.
 Settled started(const sim::Trajectory& trajectory, const ImuErrorModel& imu, const ErrorMatrix& P,
@@ -51,7 +51,8 @@ ImuErrorModel gauss_markov_model() {
 
 }  // namespace
 
-TEST_CASE("leeway against coasting the same filter: motions, sensors, limits, metrics") {
+TEST_CASE("leeway against coasting the same filter: motions, sensors, limits, metrics" *
+          doctest::test_suite("heavy")) {
   struct Motion {
     const char* name{};
     sim::Trajectory trajectory{};
@@ -237,14 +238,14 @@ TEST_CASE("leeway: outcomes where there is no answer") {
   };
   CHECK(is_zero(time_to_limit(run.filter, 0.999 * now_m)));
   CHECK_FALSE(is_zero(time_to_limit(run.filter, 1.001 * now_m)));
-  for (const double limit_m : {0.0, -0.0, -5.0, -kInf, kNaN}) {
+  for (const double limit_m : {0.0, -0.0, -5.0, -kInf, kNan}) {
     CAPTURE(limit_m);
     CHECK(is_zero(time_to_limit(run.filter, limit_m)));
     for (const HorizontalMetric which : kHorizontalMetrics) {
       CHECK(is_zero(time_to_limit(run.filter, limit_m, which)));
     }
   }
-  for (const double probability : {-1.0, 0.0, 1.0, 2.0, kNaN}) {
+  for (const double probability : {-1.0, 0.0, 1.0, 2.0, kNan}) {
     CAPTURE(probability);
     CHECK(is_zero(time_to_limit(run.filter, 10.0, probability)));
   }

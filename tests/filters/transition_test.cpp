@@ -11,6 +11,7 @@
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "support/near.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway {
 namespace {
@@ -19,7 +20,7 @@ using test::near;
 using test::random_estimate;
 using test::random_vector;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using test::kInf;
 constexpr double kTauA = 5.0;
 constexpr double kTauG = 8.0;
 

@@ -58,7 +58,8 @@ std::vector<double> bits(const CampaignResult& r) {
 
 }  // namespace
 
-TEST_CASE("square loop, tactical: errors have the size the filter claims, over seeds 1..200") {
+TEST_CASE("square loop, tactical: errors have the size the filter claims, over seeds 1..200" *
+          doctest::test_suite("heavy")) {
   // The reference's own Monte Carlo gives ratios of 0.985 to 1.012, and DRMS before the fix of
   // 0.505, 1.77 and 10.3 m after four hours; 20 minutes leave the biases a little less settled.
   struct Case {
@@ -88,7 +89,8 @@ TEST_CASE("square loop, tactical: errors have the size the filter claims, over s
   }
 }
 
-TEST_CASE("a filter that is wrong about its sensors is found out, in either direction") {
+TEST_CASE("a filter that is wrong about its sensors is found out, in either direction" *
+          doctest::test_suite("heavy")) {
   Scene scene = defined_case(60.0);
   scene.trials = 40;
   scene.duration_s = 600.0;

@@ -27,7 +27,8 @@ Scene defined_case(ImuClass imu, double interval_s) {
 
 }  // namespace
 
-TEST_CASE("errors and NEES are what the filter claims, as far as an EKF can be consistent") {
+TEST_CASE("errors and NEES are what the filter claims, as far as an EKF can be consistent" *
+          doctest::test_suite("heavy")) {
   struct Case {
     ImuClass imu;
     double interval_s;
@@ -52,7 +53,8 @@ TEST_CASE("errors and NEES are what the filter claims, as far as an EKF can be c
   }
 }
 
-TEST_CASE("errors that the filter does not model are as large as the truth-model analysis says") {
+TEST_CASE("errors that the filter does not model are as large as the truth-model analysis says" *
+          doctest::test_suite("heavy")) {
   for (const double interval_s : {10.0, 60.0}) {
     Scene scene = defined_case(ImuClass::kTactical, interval_s);
     scene.duration_s = 1800.0;

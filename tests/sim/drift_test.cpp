@@ -26,7 +26,8 @@ static const DriftStudy& study() {
   return kStudy;
 }
 
-TEST_CASE("[seed Table 2] as printed stands beside the other readings") {
+TEST_CASE("[seed Table 2] as printed stands beside the other readings" *
+          doctest::test_suite("heavy")) {
   constexpr std::array kErrors{0.9, 3.1, 10.2, 87.3, 867.7};
   constexpr std::array kTimes{980.0, 580.0, 325.0, 110.0, 35.0};
   for (std::size_t i = 0; i < kImuClasses.size(); ++i) {
@@ -37,7 +38,7 @@ TEST_CASE("[seed Table 2] as printed stands beside the other readings") {
   CHECK(study().rows.size() == 5 * 5);
 }
 
-TEST_CASE("the paper's assumptions give 0.866 b t^2 within 1 %") {
+TEST_CASE("the paper's assumptions give 0.866 b t^2 within 1 %" * doctest::test_suite("heavy")) {
   // 0.5 sqrt(3) b t^2; at 100 s the Earth's gravity field changes it by under 0.3 %.
   constexpr std::array kLowDriftMps2{1e-4, 3e-4, 1e-3, 1e-2, 1e-1};
   for (std::size_t i = 0; i < kImuClasses.size(); ++i) {
@@ -54,7 +55,8 @@ TEST_CASE("the paper's assumptions give 0.866 b t^2 within 1 %") {
   CHECK(test::near(tactical.time_to_100m_s, 107.46, 0.5));
 }
 
-TEST_CASE("the complete model agrees with the independent reference within its Monte Carlo band") {
+TEST_CASE("the complete model agrees with the independent reference within its Monte Carlo band" *
+          doctest::test_suite("heavy")) {
   // The mean square of 200 trials of a 3-D error has 600 degrees of freedom at most and 200 at
   // least: its root scatters by 1 / sqrt(2 * 200) = 5 % at worst, 10 % for two sigma.
   struct Case {
@@ -81,7 +83,8 @@ TEST_CASE("the complete model agrees with the independent reference within its M
   }
 }
 
-TEST_CASE("curves start at zero, one point a second, and end past 100 s and 100 m") {
+TEST_CASE("curves start at zero, one point a second, and end past 100 s and 100 m" *
+          doctest::test_suite("heavy")) {
   REQUIRE(study().curves.size() == 5 * 4);
   for (const DriftCurve& curve : study().curves) {
     REQUIRE(curve.t_s.size() == curve.error_m.size());

@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "leeway/sim/random.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway::sim {
 namespace {
 
 constexpr double kMax = std::numeric_limits<double>::max();
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-const double kNan = std::nan("");
+using test::kInf;
+using test::kNan;
 
 ExactSum exact(const std::vector<double>& terms) {
   ExactSum sum;

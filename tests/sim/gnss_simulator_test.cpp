@@ -13,6 +13,7 @@
 namespace leeway::sim {
 namespace {
 
+using test::is_chi_square_mean;
 using test::near;
 
 /// Errors far below rounding: the fix is the truth.
@@ -27,10 +28,6 @@ GnssErrorModel exact_model() {
 Eigen::Vector3d position_error_n(const GnssFix& fix) {
   return ned_to_ecef(kDefaultOrigin).transpose() *
          (fix.position->r_e_m - ecef_from_geodetic(kDefaultOrigin));
-}
-
-bool is_chi_square_mean(double ratio, int degrees) {
-  return near(ratio, 1.0, 4.0 * std::sqrt(2.0 / degrees));
 }
 
 }  // namespace

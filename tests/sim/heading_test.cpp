@@ -116,7 +116,8 @@ constexpr int kRequired = kSeeds * 99 / 100;
 
 // The members stand 30 deg apart on the circle, so the truth is at its furthest from one of them,
 // 15 deg, at 0, 90 and 180 deg, and meets one at 45 and 135.
-TEST_CASE("from the wrong heading 99 % of the seeds end within 3 deg and their own 3 sigma") {
+TEST_CASE("from the wrong heading 99 % of the seeds end within 3 deg and their own 3 sigma" *
+          doctest::test_suite("heavy")) {
   for (const ImuClass imu : {ImuClass::kTactical, ImuClass::kAutomotive}) {
     for (const double error_deg : {135.0, 180.0}) {
       const int good = good_ends({imu, RangeEnd::kMid}, error_deg, false);

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
 
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
+#include "leeway/rotation.hpp"
 #include "support/near.hpp"
 #include "support/temp_dir.hpp"
 
@@ -20,8 +20,6 @@ namespace {
 
 using test::contains;
 using test::near;
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 std::string number(double value) {
   std::ostringstream text;
@@ -136,13 +134,13 @@ TEST_CASE("catalogue: a model by hand") {
   CHECK(close(m.accelerometer.noise_density, 1e-3));
   CHECK(close(m.accelerometer.scale_sigma, 3e-4));
   CHECK(close(m.accelerometer.misalignment_sigma_rad, 1e-3));
-  CHECK(close(m.gyro.bias_sigma, 5.0 * kDeg / 3600.0));
-  CHECK(close(m.gyro.in_run.sigma, 0.5 * kDeg / 3600.0 / kAllanPeak));
-  CHECK(close(m.gyro.noise_density, 0.0025 * kDeg));
+  CHECK(close(m.gyro.bias_sigma, 5.0 * kRadPerDeg / 3600.0));
+  CHECK(close(m.gyro.in_run.sigma, 0.5 * kRadPerDeg / 3600.0 / kAllanPeak));
+  CHECK(close(m.gyro.noise_density, 0.0025 * kRadPerDeg));
   CHECK(close(m.gyro.scale_sigma, 5e-4));
-  CHECK(close(m.G_g_sigma_radps_per_mps2, kDeg / 3600.0 / 9.80665));
+  CHECK(close(m.G_g_sigma_radps_per_mps2, kRadPerDeg / 3600.0 / 9.80665));
   // A guaranteed maximum is three sigma: 2 deg/h of the KVH 1750.
-  CHECK(close(imu_model(imu_part("KVH 1750")).gyro.bias_sigma, 2.0 / 3.0 * kDeg / 3600.0));
+  CHECK(close(imu_model(imu_part("KVH 1750")).gyro.bias_sigma, 2.0 / 3.0 * kRadPerDeg / 3600.0));
 }
 
 TEST_CASE("catalogue: the Allan deviation of a Gauss-Markov process peaks at kAllanPeak sigma") {

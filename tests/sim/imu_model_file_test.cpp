@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <string>
 
 #include "leeway/error.hpp"
+#include "leeway/rotation.hpp"
 #include "support/near.hpp"
 #include "support/temp_dir.hpp"
 
@@ -17,8 +17,6 @@ namespace {
 using test::contains;
 using test::near;
 using test::TempDir;
-
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 ImuErrorModel model_of(const std::string& text) {
   const TempDir dir;
@@ -56,15 +54,15 @@ TEST_CASE("every unit, against its definition") {
       {"[accelerometer]\nnoise_mps_per_sqrt_h = 0.06", a_noise, 1e-3},
       {"[accelerometer]\nrange_g = 2", a_range, 19.6133},
       {"[accelerometer]\nrange_mps2 = 50", a_range, 50.0},
-      {"[gyro]\nbias_deg_per_h = [0, 0, 3600]", g_bias, kDeg},
-      {"[gyro]\nbias_deg_per_s = [0, 0, 0.5]", g_bias, 0.5 * kDeg},
+      {"[gyro]\nbias_deg_per_h = [0, 0, 3600]", g_bias, kRadPerDeg},
+      {"[gyro]\nbias_deg_per_s = [0, 0, 0.5]", g_bias, 0.5 * kRadPerDeg},
       {"[gyro]\nbias_radps = [0, 0, -0.01]", g_bias, -0.01},
-      {"[gyro]\nbias_sigma_deg_per_h = 36", g_sigma, 0.01 * kDeg},
-      {"[gyro]\nbias_sigma_deg_per_s = 0.01", g_sigma, 0.01 * kDeg},
+      {"[gyro]\nbias_sigma_deg_per_h = 36", g_sigma, 0.01 * kRadPerDeg},
+      {"[gyro]\nbias_sigma_deg_per_s = 0.01", g_sigma, 0.01 * kRadPerDeg},
       {"[gyro]\nbias_sigma_radps = 5e-6", g_sigma, 5e-6},
-      {"[gyro]\nnoise_deg_per_sqrt_h = 60", g_noise, kDeg},
-      {"[gyro]\nnoise_dps_per_sqrt_hz = 0.005", g_noise, 0.005 * kDeg},
-      {"[gyro]\nquantum_arcsec = 3600", g_quantum, kDeg},
+      {"[gyro]\nnoise_deg_per_sqrt_h = 60", g_noise, kRadPerDeg},
+      {"[gyro]\nnoise_dps_per_sqrt_hz = 0.005", g_noise, 0.005 * kRadPerDeg},
+      {"[gyro]\nquantum_arcsec = 3600", g_quantum, kRadPerDeg},
       {"[gyro]\nquantum_rad = 1e-6", g_quantum, 1e-6},
   };
   for (const UnitCase& c : cases) {
@@ -94,14 +92,14 @@ g_sensitivity_deg_per_h_per_g = [[1, 0, 0], [0, 0, 2], [0, 0, 0]]
   Eigen::Matrix3d M_g = M_a;
   M_g.diagonal().setConstant(1.00005);
   CHECK(near(m.gyro.M, M_g, 1e-15));
-  const double one = kDeg / 3600.0 / 9.80665;
+  const double one = kRadPerDeg / 3600.0 / 9.80665;
   CHECK(near(m.G_g_radps_per_mps2(0, 0), one, 1e-15 * one));
   CHECK(near(m.G_g_radps_per_mps2(1, 2), 2.0 * one, 1e-15 * one));
   CHECK(m.G_g_radps_per_mps2(2, 1) == 0.0);
   CHECK(m.accelerometer.quantum == 1e-5);
   CHECK(near(m.accelerometer.in_run.sigma, 9.80665e-5, 1e-19));
   CHECK(m.accelerometer.in_run.tau_s == 600.0);
-  CHECK(near(m.gyro.range, 250.0 * kDeg, 1e-15));
+  CHECK(near(m.gyro.range, 250.0 * kRadPerDeg, 1e-15));
 }
 
 TEST_CASE("what is absent is no error") {
@@ -164,8 +162,8 @@ g_sensitivity_sigma_deg_per_h_per_g = 2
   CHECK(near(m.accelerometer.scale_sigma, 3e-4, 1e-19));
   CHECK(near(m.accelerometer.misalignment_sigma_rad, 5e-4, 1e-18));
   CHECK(near(m.gyro.scale_sigma, 1e-3, 1e-18));
-  CHECK(near(m.gyro.misalignment_sigma_rad, 0.05 * kDeg, 1e-17));
-  CHECK(near(m.G_g_sigma_radps_per_mps2, 2.0 * kDeg / 3600.0 / 9.80665, 1e-21));
+  CHECK(near(m.gyro.misalignment_sigma_rad, 0.05 * kRadPerDeg, 1e-17));
+  CHECK(near(m.G_g_sigma_radps_per_mps2, 2.0 * kRadPerDeg / 3600.0 / 9.80665, 1e-21));
   CHECK(m.accelerometer.M == Eigen::Matrix3d::Identity());
 }
 

@@ -16,6 +16,7 @@
 namespace leeway::sim {
 namespace {
 
+using test::is_chi_square_mean;
 using test::near;
 
 constexpr double kDtS = 0.01;
@@ -37,12 +38,6 @@ Eigen::Vector3d summed_dv(ImuErrorSimulator& simulator, double dt_s, int count) 
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < count; ++k) sum += simulator.measure(nothing).dv_b_mps;
   return sum;
-}
-
-/// Two-sided bound of a sample variance over its expectation: four standard deviations of the
-/// chi-square distribution over its mean.
-bool is_chi_square_mean(double ratio, int degrees) {
-  return near(ratio, 1.0, 4.0 * std::sqrt(2.0 / degrees));
 }
 
 }  // namespace

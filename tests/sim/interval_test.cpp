@@ -31,7 +31,7 @@ Scene defined_case(ImuClass imu, bool drifting = false) {
 
 }  // namespace
 
-TEST_CASE("the defined case: the reference's intervals within 6 %") {
+TEST_CASE("the defined case: the reference's intervals within 6 %" * doctest::test_suite("heavy")) {
   // They were interpolated on a coarse grid of intervals: hence the 6 %.
   struct Row {
     ImuClass imu;

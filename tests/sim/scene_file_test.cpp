@@ -29,7 +29,7 @@ const std::string kStill = "[trajectory]\ntype = \"static\"\n";
 
 Scene parsed(const std::string& text) { return parse_scene(text, "scene.toml"); }
 
-std::string refusal(const std::string& text) {
+std::string scene_refusal(const std::string& text) {
   return test::message_of<Error>([&text] { parsed(text); });
 }
 
@@ -262,7 +262,7 @@ TEST_CASE("a recording is found beside the scene, and cannot be longer than it i
   CHECK(read_scene(path, 20.0).trajectory.duration_s == 20.0);
   const std::string longer = test::message_of<Error>([&path] { read_scene(path, 100.0); });
   CHECK(contains(longer, "scene.toml:5:8: 'file' ends after 40 s"));
-  const std::string lost = refusal(text);  // not beside this one
+  const std::string lost = scene_refusal(text);  // not beside this one
   CHECK(contains(lost, "scene.toml:5:8: 'file' cannot be used"));
   CHECK(contains(lost, "log.csv"));
 }
@@ -358,7 +358,7 @@ TEST_CASE("mistakes in a scene are refused with line, column and what was meant"
   };
   for (const auto& c : cases) {
     CAPTURE(c.text);
-    const std::string message = refusal(c.text);
+    const std::string message = scene_refusal(c.text);
     CAPTURE(message);
     CHECK(contains(message, std::string("scene.toml") + c.where));
     CHECK(contains(message, c.named));

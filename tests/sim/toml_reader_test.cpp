@@ -165,7 +165,7 @@ TEST_CASE("toml reader: every letter beyond ASCII outside a string is refused (2
 }
 
 TEST_CASE("toml reader: a key of a million characters is refused in one line, at once") {
-  const std::string message = refusal(std::string(1000000, 'a') + " = 1", ask_numbers);
+  const std::string message = refusal(std::string(1000000, 'a').append(" = 1"), ask_numbers);
   CHECK(contains(message, "unknown key 'aaa"));
   CHECK(message.size() < 1000);
 }

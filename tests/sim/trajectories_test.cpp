@@ -9,14 +9,14 @@
 
 #include "leeway/error.hpp"
 #include "support/near.hpp"
+#include "support/numbers.hpp"
 
 namespace leeway::sim {
 namespace {
 
 using test::near;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using test::kNan;
 
 Eigen::Vector3d position_l(const LocalMotion& m) {
   return {m.north_m.value, m.east_m.value, m.down_m.value};
@@ -33,14 +33,14 @@ Eigen::Vector3d acceleration_l(const LocalMotion& m) {
 }  // namespace
 
 TEST_CASE("straight: the stated velocity, the body along it") {
-  const Trajectory trajectory =
-      straight({.ground_speed_mps = 30.0, .climb_rate_mps = 3.0, .heading_rad = kPi / 6.0});
+  const Trajectory trajectory = straight(
+      {.ground_speed_mps = 30.0, .climb_rate_mps = 3.0, .heading_rad = std::numbers::pi / 6.0});
   const LocalMotion m = trajectory.motion(100.0);
   // One rounding of 2600 m.
   CHECK(near(position_l(m), Eigen::Vector3d(1500.0 * std::sqrt(3.0), 1500.0, -300.0), 1e-12));
   CHECK(near(velocity_l(m), Eigen::Vector3d(15.0 * std::sqrt(3.0), 15.0, -3.0), 1e-14));
   CHECK(near(std::tan(m.pitch_rad.value), 0.1, 1e-16));
-  CHECK(m.yaw_rad.value == kPi / 6.0);
+  CHECK(m.yaw_rad.value == std::numbers::pi / 6.0);
 }
 
 TEST_CASE("circle: radius about the centre, speed, and the body along the path") {
@@ -73,7 +73,7 @@ TEST_CASE("square loop: agrees with dead reckoning from its yaw rate") {
     const LocalMotion m = trajectory.motion(t_s);
     // The midpoint rule errs by (turn per step)^2 / 24 of the length of the turns, 1600 m: 2e-4 m.
     REQUIRE(near(position_l(m), Eigen::Vector3d(north_m, east_m, 0.0), 3e-4));
-    REQUIRE(near(std::remainder(m.yaw_rad.value - yaw_rad, 2.0 * kPi), 0.0, 1e-10));
+    REQUIRE(near(std::remainder(m.yaw_rad.value - yaw_rad, 2.0 * std::numbers::pi), 0.0, 1e-10));
     REQUIRE(near(velocity_l(m).norm(), 20.0, 1e-13));
   }
 }
@@ -103,7 +103,7 @@ TEST_CASE("square loop: breaks are where straights and turns meet, and only they
     const LocalMotion after = trajectory.motion(break_s + h_s);
     CHECK(near(position_l(before), position_l(after), 41.0 * h_s));  // 20 m/s over 2 h
     CHECK(near(velocity_l(before), velocity_l(after), 6.4 * h_s));   // pi m/s^2 over 2 h
-    CHECK(near((acceleration_l(after) - acceleration_l(before)).norm(), kPi, 1e-5));
+    CHECK(near((acceleration_l(after) - acceleration_l(before)).norm(), std::numbers::pi, 1e-5));
     CHECK(near(std::abs(after.yaw_rad.first - before.yaw_rad.first), 9.0 * kRadPerDeg, 1e-12));
   }
 }
@@ -125,7 +125,8 @@ TEST_CASE("car drive: rests, speeds, accelerations and slopes are those of a car
     slope = std::max(slope, std::abs(v.z()) / ground);
     // The body points along the road; bumps are 0.8 deg at most.
     CHECK(near(m.pitch_rad.value, std::atan2(-v.z(), ground), 0.81 * kRadPerDeg));
-    CHECK(near(std::remainder(m.yaw_rad.value - std::atan2(v.y(), v.x()), 2 * kPi), 0.0, 1e-9));
+    CHECK(near(std::remainder(m.yaw_rad.value - std::atan2(v.y(), v.x()), 2 * std::numbers::pi),
+               0.0, 1e-9));
   }
   CHECK(top_speed > 20.0);
   CHECK(top_speed < 25.0);
@@ -208,9 +209,9 @@ TEST_CASE("parameters outside their range are refused by name") {
   CHECK_THROWS_WITH_AS(circle({.speed_mps = -1.0}),
                        "circle: speed_mps is -1, must be finite and >= 0", Error);
   CHECK_THROWS_AS(circle({.duration_s = 0.0}), Error);
-  CHECK_THROWS_AS(static_trajectory({.origin = {kNaN, 0.0, 0.0}}), Error);
-  CHECK_THROWS_AS(static_trajectory({.attitude = {0.0, kNaN, 0.0}}), Error);
-  CHECK_THROWS_WITH_AS(straight({.heading_rad = kNaN}),
+  CHECK_THROWS_AS(static_trajectory({.origin = {kNan, 0.0, 0.0}}), Error);
+  CHECK_THROWS_AS(static_trajectory({.attitude = {0.0, kNan, 0.0}}), Error);
+  CHECK_THROWS_WITH_AS(straight({.heading_rad = kNan}),
                        "straight: heading_rad is nan, must be finite", Error);
   CHECK_THROWS_AS(square_loop({.turn_s = 0.0}), Error);
   CHECK_THROWS_AS(square_loop({.straight_s = -1.0}), Error);

@@ -16,8 +16,26 @@ void* counted(void* memory) {
 
 }  // namespace
 
+extern "C" {
+
+void* __real_malloc(std::size_t size);
+void* __real_calloc(std::size_t count, std::size_t size);
+void* __real_realloc(void* memory, std::size_t size);
+
+// NOLINTBEGIN(bugprone-reserved-identifier): the names are the linker's.
+void* __wrap_malloc(std::size_t size) { return counted(__real_malloc(size)); }
+void* __wrap_calloc(std::size_t count, std::size_t size) {
+  return counted(__real_calloc(count, size));
+}
+void* __wrap_realloc(void* memory, std::size_t size) {
+  return counted(__real_realloc(memory, size));
+}
+// NOLINTEND(bugprone-reserved-identifier)
+
+}  // extern "C"
+
 // The array and nothrow forms call these.
-void* operator new(std::size_t size) { return counted(std::malloc(size == 0 ? 1 : size)); }
+void* operator new(std::size_t size) { return std::malloc(size == 0 ? 1 : size); }
 
 void* operator new(std::size_t size, std::align_val_t alignment) {
   const auto align = static_cast<std::size_t>(alignment);

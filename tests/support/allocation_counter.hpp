@@ -1,7 +1,7 @@
 /// @file
 /// Counts heap allocations, to prove that a hot path makes none. Replaces the global operator new
-/// of the program it is linked into; what Eigen allocates for dynamic sizes bypasses it and is
-/// caught by EIGEN_RUNTIME_NO_MALLOC instead.
+/// of the program it is linked into, and, by the linker's --wrap, malloc and its kin in everything
+/// linked statically: that is where Eigen's dynamic sizes come from.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ class AllocationCounter {
  public:
   AllocationCounter();
 
-  /// Calls of operator new, on any thread, since construction.
+  /// Allocations, on any thread, since construction.
   std::size_t count() const;
 
  private:

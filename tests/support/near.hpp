@@ -21,4 +21,10 @@ bool near(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b, double t
   return distance(a, b) <= tolerance;
 }
 
+/// Whether a mean of squares over its expectation is within four standard deviations of 1, by the
+/// chi-square distribution.
+inline bool is_chi_square_mean(double ratio, int degrees) {
+  return near(ratio, 1.0, 4.0 * std::sqrt(2.0 / degrees));
+}
+
 }  // namespace leeway::test

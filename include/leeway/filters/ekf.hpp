@@ -115,6 +115,9 @@ class Ekf {
   /// Covariance at the estimate's time. Reading it changes nothing.
   ErrorMatrix covariance() const;
 
+  /// Whether P has been propagated up to the estimate's time.
+  bool covariance_is_current() const { return Phi_.dt_s == 0.0; }
+
   /// From now on the parameters of the vehicle are estimated too.
   /// @pre P symmetric positive semidefinite, everything finite.
   void estimate_vehicle(const VehicleState& vehicle);
@@ -167,6 +170,7 @@ class Ekf {
  private:
   void flush();
   double position_weight(Time t) const;
+  MeasurementMatrix innovation_covariance(const Measurement& m) const;
   UpdateReport judge(const Measurement& m);
   void fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights, Held held);
 

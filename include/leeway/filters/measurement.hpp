@@ -9,6 +9,9 @@
 
 namespace leeway {
 
+/// Rows and columns: the components of a measurement, at most 6. Fixed storage.
+using MeasurementMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
 /// z = H x + H_vehicle y + noise of covariance R, one row per component, at most 6; x is the error
 /// state, y the error of the vehicle's parameters. Fixed storage.
 struct Measurement {
@@ -25,7 +28,7 @@ struct Measurement {
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> innovation;
   Eigen::Matrix<double, Eigen::Dynamic, kErrorStates, 0, 6, kErrorStates> H;
   Eigen::Matrix<double, Eigen::Dynamic, kVehicleStates, 0, 6, kVehicleStates> H_vehicle;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> R;
+  MeasurementMatrix R;
 };
 
 }  // namespace leeway
