@@ -109,7 +109,7 @@ TEST_CASE("campaign prints what was found beside what an honest filter gives") {
   }
 }
 
-TEST_CASE("the same bytes on any number of threads and ranks") {
+TEST_CASE("the same bytes on any number of threads and ranks" * doctest::test_suite("heavy")) {
   const std::string one = leeway(campaign(30) + "--threads 1 --json").out;
   CHECK(contains(one, "rms_over_sigma"));
   CHECK(leeway(campaign(30) + "--threads 2 --json").out == one);
@@ -150,7 +150,8 @@ TEST_CASE("killed half-way, a campaign goes on from its finished trials, losing 
   CHECK(leeway(arguments + " --json").out == uninterrupted);
 }
 
-TEST_CASE("ranks keep a journal each, and any number of them resumes from all") {
+TEST_CASE("ranks keep a journal each, and any number of them resumes from all" *
+          doctest::test_suite("heavy")) {
   if (!has_mpi()) {
     MESSAGE("skipped: no mpirun, or built without MPI");
     return;
@@ -166,7 +167,8 @@ TEST_CASE("ranks keep a journal each, and any number of them resumes from all") 
   CHECK(contains(leeway(campaign(24) + journal, mpirun(2)).out, "Computed: 0 trials"));
 }
 
-TEST_CASE("a rank that fails ends all, with one message and its exit code") {
+TEST_CASE("a rank that fails ends all, with one message and its exit code" *
+          doctest::test_suite("heavy")) {
   if (!has_mpi()) {
     MESSAGE("skipped: no mpirun, or built without MPI");
     return;

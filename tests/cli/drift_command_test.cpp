@@ -25,7 +25,7 @@ const nlohmann::json& row(const char* imu, const char* range, const char* readin
   throw std::runtime_error(std::string("no row ") + imu + " " + range + " " + reading);
 }
 
-TEST_CASE("drift --json: the contract") {
+TEST_CASE("drift --json: the contract" * doctest::test_suite("heavy")) {
   CHECK(drift().at("leeway").is_string());
   CHECK(drift().at("command") == "drift");
   CHECK(drift().at("input").at("trials") == 100);
@@ -43,7 +43,8 @@ TEST_CASE("drift --json: the contract") {
   }
 }
 
-TEST_CASE("drift: the paper's cells as printed, its assumptions within 1 %") {
+TEST_CASE("drift: the paper's cells as printed, its assumptions within 1 %" *
+          doctest::test_suite("heavy")) {
   const struct {
     const char* imu;
     double paper_m;
@@ -88,7 +89,8 @@ TEST_CASE("drift: the complete model within the Monte Carlo band of the referenc
              0.5 * kBand));
 }
 
-TEST_CASE("drift prints the table, says why the readings differ, and writes the curves") {
+TEST_CASE("drift prints the table, says why the readings differ, and writes the curves" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   const Outcome outcome = leeway(std::string(kDrift) + "--curves " + quoted(dir / "curves.csv"));
   CHECK(outcome.exit_code == 0);

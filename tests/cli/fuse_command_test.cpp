@@ -106,7 +106,8 @@ std::string in_sensor_axes(const std::array<std::size_t, 3>& from,
   return text_of(lines);
 }
 
-TEST_CASE("fuse --mount takes sensor axes to the body, as forward-left-up or as given") {
+TEST_CASE("fuse --mount takes sensor axes to the body, as forward-left-up or as given" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   const std::string truth = " --truth " + quoted(simulated().truth);
   const double plain_m = horizontal_rms_m(simulated().fuse_with_truth());
@@ -129,7 +130,8 @@ TEST_CASE("fuse --mount takes sensor axes to the body, as forward-left-up or as 
   CHECK(contains(upside_down.err, "vertical sensor axis points up"));
 }
 
-TEST_CASE("fuse --vehicle car finds the mount, and takes an odometer that reads too much") {
+TEST_CASE("fuse --vehicle car finds the mount, and takes an odometer that reads too much" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   // Sensor axes left, back, up: roll 180, yaw -90 deg to forward, right, down.
   const auto left = dir.file("left.csv", in_sensor_axes({1, 0, 2}, {-1.0, -1.0, -1.0}));
@@ -221,7 +223,7 @@ TEST_CASE("fuse without an answer exits with 2") {
   CHECK(unscored.json().at("results").at("outages")[0].at("end_error_h_m").is_null());
 }
 
-TEST_CASE("fuse --drive: recorded drives, their outages pooled") {
+TEST_CASE("fuse --drive: recorded drives, their outages pooled" * doctest::test_suite("heavy")) {
   const std::filesystem::path drives = std::filesystem::path(LEEWAY_SHARED_DIR) / "data/drives";
   if (!std::filesystem::exists(drives)) {
     MESSAGE("skipped: no recorded drives at " << drives.string());

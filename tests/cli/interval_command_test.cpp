@@ -15,7 +15,8 @@ std::string scene(const char* file) {
 
 }  // namespace
 
-TEST_CASE("interval: five classes by five limits, as the contract says") {
+TEST_CASE("interval: five classes by five limits, as the contract says" *
+          doctest::test_suite("heavy")) {
   const auto object = leeway("interval" + scene("square-loop.toml") + "--at 3600 --json").json();
   CHECK(object.at("command") == "interval");
   const auto& results = object.at("results");
@@ -36,7 +37,8 @@ TEST_CASE("interval: five classes by five limits, as the contract says") {
   CHECK(results[24].at("imu") == "automotive");
 }
 
-TEST_CASE("interval: one cell of the reference, by class, range, bias, metric, limit and mark") {
+TEST_CASE("interval: one cell of the reference, by class, range, bias, metric, limit and mark" *
+          doctest::test_suite("heavy")) {
   const auto cell = [](const std::string& options) {
     return leeway("interval" + scene("square-loop.toml") + options + " --json")
         .json()
@@ -62,7 +64,8 @@ TEST_CASE("interval: one cell of the reference, by class, range, bias, metric, l
   CHECK(std::abs(at_rest.at("free_inertial_s").get<double>() - 1237.0) < 3.0);
 }
 
-TEST_CASE("interval --confirm: the Monte Carlo stands beside the answer") {
+TEST_CASE("interval --confirm: the Monte Carlo stands beside the answer" *
+          doctest::test_suite("heavy")) {
   const auto row = leeway("interval" + scene("square-loop.toml") +
                           "--imu tactical --limit 3 --at 900 --confirm 20 --json")
                        .json()
@@ -77,7 +80,8 @@ TEST_CASE("interval --confirm: the Monte Carlo stands beside the answer") {
   CHECK(row.at("confirm").at("monte_carlo_interval_s").is_null());
 }
 
-TEST_CASE("interval: an EKF that is not consistent is said not to be") {
+TEST_CASE("interval: an EKF that is not consistent is said not to be" *
+          doctest::test_suite("heavy")) {
   // The reference: automotive at rest claims 4.6 deg of heading where it errs by 66.
   const auto row = leeway("interval" + scene("static-45.toml") +
                           "--imu automotive --limit 3 --at 1800 --confirm 20 --json")
@@ -87,7 +91,8 @@ TEST_CASE("interval: an EKF that is not consistent is said not to be") {
   CHECK(row.at("consistent") == false);
 }
 
-TEST_CASE("interval prints one table, the paper's conclusion and what the step costs") {
+TEST_CASE("interval prints one table, the paper's conclusion and what the step costs" *
+          doctest::test_suite("heavy")) {
   const Outcome outcome = leeway("interval" + scene("town-car.toml"));
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.err.empty());

@@ -301,7 +301,7 @@ TEST_CASE("an increment needs a positive length") {
   CHECK(reader.report().count(LineDamage::kOutOfRange) == 2);
 }
 
-TEST_CASE("every recorded drive reads whole and clean") {
+TEST_CASE("every recorded drive reads whole and clean" * doctest::test_suite("heavy")) {
   const std::filesystem::path drives = std::filesystem::path(LEEWAY_SHARED_DIR) / "data/drives";
   if (!std::filesystem::exists(drives)) {
     MESSAGE("skipped: no " << drives.string());

@@ -101,7 +101,7 @@ TEST_CASE("no policy of the strapdown allocates") {
   CHECK(allocations.count() == 1);  // the counter counts
 }
 
-TEST_CASE("each scheme converges at its order") {
+TEST_CASE("each scheme converges at its order" * doctest::test_suite("heavy")) {
   constexpr Duration kUnit{20'000'000};
   for (const Scheme scheme : {Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler}) {
     const Order o = order(scheme, {1}, kUnit);
@@ -117,7 +117,8 @@ TEST_CASE("each scheme converges at its order") {
   }
 }
 
-TEST_CASE("on intervals of unequal length RK4 keeps its order and two-sample loses one") {
+TEST_CASE("on intervals of unequal length RK4 keeps its order and two-sample loses one" *
+          doctest::test_suite("heavy")) {
   // Two unequal increments are not symmetric about their middle, where the next order cancels.
   for (const std::vector<int>& pattern : {std::vector{2, 3}, std::vector{3, 2, 4, 2, 3, 1}}) {
     constexpr Duration kUnit{8'000'000};
@@ -126,7 +127,7 @@ TEST_CASE("on intervals of unequal length RK4 keeps its order and two-sample los
   }
 }
 
-TEST_CASE("a vehicle at rest stays at rest, at any latitude") {
+TEST_CASE("a vehicle at rest stays at rest, at any latitude" * doctest::test_suite("heavy")) {
   for (const double lat_deg : {0.0, 45.0, -60.0, 89.9}) {
     for (const Scheme scheme : kSchemes) {
       AnalyticMotion rest;

@@ -428,7 +428,8 @@ TEST_CASE("a position that repeats the error of the last one weighs (1 - a) / (1
   CHECK(near(information(), settled, 1e-12));
 }
 
-TEST_CASE("NIS over seeds 1 to 20 of a consistent scene is chi-square, on both sides") {
+TEST_CASE("NIS over seeds 1 to 20 of a consistent scene is chi-square, on both sides" *
+          doctest::test_suite("heavy")) {
   const sim::Trajectory trajectory = sim::square_loop({.straight_s = 20.0, .duration_s = 100.0});
   const auto truth = sim::true_increments(trajectory, 50.0, 100.0);
   EkfConfig config;

@@ -55,8 +55,8 @@ void drive(const sim::Trajectory& trajectory, const std::vector<ImuIncrement>& t
 
 }  // namespace
 
-TEST_CASE(
-    "fixes taken only when needed: few, and the error stays within the limit, seeds 1 to 12") {
+TEST_CASE("fixes taken only when needed: few, and the error stays within the limit, seeds 1 to 12" *
+          doctest::test_suite("heavy")) {
   const sim::Trajectory trajectory = sim::car_drive({.duration_s = 300.0});
   const auto truth = sim::true_increments(trajectory, 50.0, 300.0);
   EkfConfig config;

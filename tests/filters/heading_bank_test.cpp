@@ -190,7 +190,8 @@ TEST_CASE("members that agree become one, with the weight of both") {
   CHECK(bank.covariance() == bank.best().covariance());
 }
 
-TEST_CASE("at rest heading stays unknown: ten minutes do not make a false choice") {
+TEST_CASE("at rest heading stays unknown: ten minutes do not make a false choice" *
+          doctest::test_suite("heavy")) {
   struct Case {
     std::string name;
     ImuErrorModel imu;

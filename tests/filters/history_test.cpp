@@ -174,7 +174,8 @@ TEST_CASE("too late is late, and changes nothing") {
   CHECK(waits.push(fix) == Verdict::kFused);  // 4.5 s old
 }
 
-TEST_CASE("half a second of latency at 30 m/s in a circle costs less than 1 %") {
+TEST_CASE("half a second of latency at 30 m/s in a circle costs less than 1 %" *
+          doctest::test_suite("heavy")) {
   // 2026-11-24: fused at its arrival, a fix this late is 15 m off.
   const auto rms_m = [](double latency_s, std::uint64_t seed) {
     const auto log =

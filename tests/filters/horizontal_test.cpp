@@ -69,7 +69,8 @@ TEST_CASE("radius: an error along one line is normal") {
   CHECK(near(horizontal_radius_m(ellipse(2.0, 0.0), 0.95), 2.0 * 1.959963985, 2e-9));
 }
 
-TEST_CASE("radius: any ellipse against an independent integration, to 1e-9") {
+TEST_CASE("radius: any ellipse against an independent integration, to 1e-9" *
+          doctest::test_suite("heavy")) {
   double worst = 0.0;
   for (const double ratio : kAxisRatios) {
     for (const double p : kShares) {

@@ -39,7 +39,8 @@ constexpr Mount kMounts[]{
 
 }  // namespace
 
-TEST_CASE("a mount that nobody told is found on the drive, and the heading with it") {
+TEST_CASE("a mount that nobody told is found on the drive, and the heading with it" *
+          doctest::test_suite("heavy")) {
   double sum_rad2 = 0.0;
   int runs = 0;
   for (const Mount& mount : kMounts) {

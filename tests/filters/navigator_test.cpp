@@ -311,7 +311,8 @@ TEST_CASE("a fix acts at its own time: on a sample, between two, several within 
   }
 }
 
-TEST_CASE("no IMU data for a while: a gap is bridged, sigmas grow, the filter recovers") {
+TEST_CASE("no IMU data for a while: a gap is bridged, sigmas grow, the filter recovers" *
+          doctest::test_suite("heavy")) {
   // In a turn of 11 deg/s the heading held over a gap is 60 deg wrong after 5 s: too far for the
   // linearized filter to find back reliably. 2 s in the turn, 5 s in the straight.
   struct Case {
@@ -459,7 +460,8 @@ TEST_CASE("verdicts have distinct names") {
   CHECK(name(Verdict::kOverflow) == "overflow");
 }
 
-TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted") {
+TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted" *
+          doctest::test_suite("heavy")) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     sim::Random random(seed, 9);

@@ -116,7 +116,7 @@ Eigen::Vector3d east_e() { return ned_to_ecef(sim::kDefaultOrigin).col(1); }
 
 }  // namespace
 
-TEST_CASE("fix late by 0.5 s") {
+TEST_CASE("fix late by 0.5 s" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive late(seed), prompt(seed);
     drive_late(0.5, seed, late, prompt);
@@ -126,7 +126,7 @@ TEST_CASE("fix late by 0.5 s") {
   });
 }
 
-TEST_CASE("fix late by 3 s") {
+TEST_CASE("fix late by 3 s" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive late(seed), prompt(seed);
     drive_late(3.0, seed, late, prompt);
@@ -136,7 +136,7 @@ TEST_CASE("fix late by 3 s") {
   });
 }
 
-TEST_CASE("fixes out of order, and twice") {
+TEST_CASE("fixes out of order, and twice" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive swapped(seed), straight(seed);
     std::vector<GnssFix> held;
@@ -154,7 +154,7 @@ TEST_CASE("fixes out of order, and twice") {
   });
 }
 
-TEST_CASE("fix from the future") {
+TEST_CASE("fix from the future" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed);
     drive.on_fix = [&](GnssFix& fix) {
@@ -168,7 +168,7 @@ TEST_CASE("fix from the future") {
   });
 }
 
-TEST_CASE("IMU clock jumps an hour ahead and back") {
+TEST_CASE("IMU clock jumps an hour ahead and back" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     for (const int hours : {1, -1}) {
       CAPTURE(hours);
@@ -190,7 +190,7 @@ TEST_CASE("IMU clock jumps an hour ahead and back") {
   });
 }
 
-TEST_CASE("GPS week rollover of IMU and receiver") {
+TEST_CASE("GPS week rollover of IMU and receiver" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive rolled(seed), plain(seed);
     const auto roll = [](Time& t) {
@@ -217,7 +217,7 @@ TEST_CASE("GPS week rollover of IMU and receiver") {
   });
 }
 
-TEST_CASE("one wild IMU time") {
+TEST_CASE("one wild IMU time" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     for (const double off_s : {5.0, 1e5, -5.0}) {
       CAPTURE(off_s);
@@ -234,7 +234,7 @@ TEST_CASE("one wild IMU time") {
   });
 }
 
-TEST_CASE("IMU hole of 3 s") {
+TEST_CASE("IMU hole of 3 s" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed);
     drive.on_imu = [](ImuIncrement& inc) {
@@ -271,7 +271,7 @@ TEST_CASE("IMU dead for good") {
   });
 }
 
-TEST_CASE("GNSS dead for 10 minutes") {
+TEST_CASE("GNSS dead for 10 minutes" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed);
     drive.on_fix = [](GnssFix& fix) {
@@ -295,7 +295,7 @@ TEST_CASE("GNSS dead for 10 minutes") {
   });
 }
 
-TEST_CASE("single 100 m outlier") {
+TEST_CASE("single 100 m outlier" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed), without(seed);
     drive.on_fix = [](GnssFix& fix) {
@@ -349,7 +349,7 @@ TEST_CASE("velocity outliers") {
   });
 }
 
-TEST_CASE("spoofed ramp") {
+TEST_CASE("spoofed ramp" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     for (const double rate_mps : {0.5, 5.0}) {
       CAPTURE(rate_mps);
@@ -375,7 +375,7 @@ TEST_CASE("spoofed ramp") {
   });
 }
 
-TEST_CASE("over-confident receiver") {
+TEST_CASE("over-confident receiver" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed);
     drive.on_fix = [](GnssFix& fix) {
@@ -418,7 +418,7 @@ double correlated_ratio(double told_s) {
   return std::sqrt(square / n);
 }
 
-TEST_CASE("GNSS errors correlated over 60 s") {
+TEST_CASE("GNSS errors correlated over 60 s" * doctest::test_suite("heavy")) {
   const double modelled = correlated_ratio(30.0);
   const double as_white = correlated_ratio(0.0);
   MESSAGE("RMS over sigma " << modelled << ", taken as white " << as_white);
@@ -427,7 +427,7 @@ TEST_CASE("GNSS errors correlated over 60 s") {
   CHECK(as_white > 2.0 * modelled);
 }
 
-TEST_CASE("covariance of a fix that is none") {
+TEST_CASE("covariance of a fix that is none" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed), plain(seed);
     drive.on_fix = [&](GnssFix& fix) {
@@ -470,7 +470,7 @@ TEST_CASE("IMU not a number, or saturated") {
   });
 }
 
-TEST_CASE("deg/s taken for rad/s") {
+TEST_CASE("deg/s taken for rad/s" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed);
     drive.on_imu = [](ImuIncrement& inc) {
@@ -492,7 +492,7 @@ TEST_CASE("deg/s taken for rad/s") {
   });
 }
 
-TEST_CASE("heading wrong by 180 deg at the start") {
+TEST_CASE("heading wrong by 180 deg at the start" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed, {}, {}, 180.0 * kRadPerDeg);
     double found_s = kNan;
@@ -509,7 +509,8 @@ TEST_CASE("heading wrong by 180 deg at the start") {
   });
 }
 
-TEST_CASE("a standstill with a bad gyro: the claimed heading holds") {
+TEST_CASE("a standstill with a bad gyro: the claimed heading holds" *
+          doctest::test_suite("heavy")) {
   // Two sigma are 95 % of a Gaussian error: of 20, 1.0 beyond on average, more than 4 in 0.3 %.
   const ImuErrorModel imu = imu_class_model(ImuClass::kAutomotive, RangeEnd::kMid);
   const sim::Trajectory rest = sim::static_trajectory({.duration_s = 600.0});

@@ -67,7 +67,8 @@ Restore restore(Navigator& navigator, std::span<const std::byte> bytes) {
 
 }  // namespace
 
-TEST_CASE("a restored navigator goes on bit by bit as the one it was taken from") {
+TEST_CASE("a restored navigator goes on bit by bit as the one it was taken from" *
+          doctest::test_suite("heavy")) {
   // While it aligns, while headings are open, before and after the mount is known, in motion. The
   // times are amid an epoch, with fixes on their way.
   Navigator original(seeking_mount());
@@ -98,7 +99,7 @@ TEST_CASE("a restored navigator goes on bit by bit as the one it was taken from"
   CHECK(original.count(Verdict::kFused) > 100);
 }
 
-TEST_CASE("a navigator that is restored forgets what it was") {
+TEST_CASE("a navigator that is restored forgets what it was" * doctest::test_suite("heavy")) {
   Navigator original(seeking_mount());
   drive_on(original, 0.0, 20.3);
   Navigator used(seeking_mount());

@@ -183,7 +183,8 @@ TEST_CASE("a car that stands is at rest after a second") {
   }
 }
 
-TEST_CASE("creeping is no rest, however smooth: straight on and in a slow turn") {
+TEST_CASE("creeping is no rest, however smooth: straight on and in a slow turn" *
+          doctest::test_suite("heavy")) {
   // 2026-11-24: on a recorded drive the spread of half a second was that of a stop.
   const sim::Trajectory straight = sim::straight({.ground_speed_mps = 1.0});
   const sim::Trajectory turn =

@@ -99,8 +99,8 @@ TEST_CASE("leeway against coasting the same filter: motions, sensors, limits, me
   MESSAGE("worst relative difference from coasting: " << worst);
 }
 
-TEST_CASE(
-    "leeway on the road: what was answered against what then came, bends and stops included") {
+TEST_CASE("leeway on the road: what was answered against what then came, bends and stops included" *
+          doctest::test_suite("heavy")) {
   const sim::Trajectory trajectory = sim::car_drive({.duration_s = 1250.0});
   const auto truth = sim::true_increments(trajectory, 100.0, 1200.0);
   for (const ImuErrorModel& imu :
@@ -133,7 +133,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("leeway of milliseconds and of hours") {
+TEST_CASE("leeway of milliseconds and of hours" * doctest::test_suite("heavy")) {
   const sim::Trajectory trajectory = sim::static_trajectory({.duration_s = 8000.0});
   SUBCASE("a velocity error alone: t = sqrt((limit / 2.4477)^2 - sigma_r^2) / sigma_v") {
     for (const double sigma_mps : {1e-2, 1.0, 1e3}) {
@@ -164,7 +164,8 @@ TEST_CASE("leeway of milliseconds and of hours") {
   }
 }
 
-TEST_CASE("leeway is the first crossing where the error grows and shrinks") {
+TEST_CASE("leeway is the first crossing where the error grows and shrinks" *
+          doctest::test_suite("heavy")) {
   SUBCASE("a tilt, over a Schuler period") {
     const sim::Trajectory trajectory = sim::static_trajectory({.duration_s = 5000.0});
     const Eigen::Vector3d north_e = ned_to_ecef(trajectory.plane.origin).col(0);

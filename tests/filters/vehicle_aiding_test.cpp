@@ -43,7 +43,8 @@ double outage_rms_m(const NavigatorConfig& config, double outage_s, bool odomete
 
 }  // namespace
 
-TEST_CASE("a minute without fixes: that it is a car takes off most of the drift, its wheels more") {
+TEST_CASE("a minute without fixes: that it is a car takes off most of the drift, its wheels more" *
+          doctest::test_suite("heavy")) {
   NavigatorConfig plain = car_config();
   plain.vehicle = VehicleConfig{};
   const double without_m = outage_rms_m(plain, 60.0, false);
@@ -59,7 +60,7 @@ TEST_CASE("a minute without fixes: that it is a car takes off most of the drift,
 
 // Known to fail, 2026-11-24: it slows down evenly to a stop, 75 s into the outage. Three sigma of
 // the velocity have grown to 1.3 m/s by then, so it is taken for resting at 1.5 m/s already.
-TEST_CASE("a car that rolls to a stop unseen rests when it does") {
+TEST_CASE("a car that rolls to a stop unseen rests when it does" * doctest::test_suite("heavy")) {
   int too_early = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Navigator navigator = test::started_car(car_config());
@@ -75,7 +76,8 @@ TEST_CASE("a car that rolls to a stop unseen rests when it does") {
   CHECK(too_early == 0);
 }
 
-TEST_CASE("a mount 2 deg off is found within three sigma, over seeds 1 to 20") {
+TEST_CASE("a mount 2 deg off is found within three sigma, over seeds 1 to 20" *
+          doctest::test_suite("heavy")) {
   const double off_rad = 2.0 * kRadPerDeg;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
@@ -97,7 +99,8 @@ TEST_CASE("a mount 2 deg off is found within three sigma, over seeds 1 to 20") {
   }
 }
 
-TEST_CASE("wheels that read 2 % too much: the scale is found within three sigma") {
+TEST_CASE("wheels that read 2 % too much: the scale is found within three sigma" *
+          doctest::test_suite("heavy")) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Navigator navigator = test::started_car(car_config());
@@ -110,7 +113,8 @@ TEST_CASE("wheels that read 2 % too much: the scale is found within three sigma"
   }
 }
 
-TEST_CASE("the barometer's offset is found within three sigma, and holds the height afterwards") {
+TEST_CASE("the barometer's offset is found within three sigma, and holds the height afterwards" *
+          doctest::test_suite("heavy")) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Navigator navigator = test::started_car(car_config());

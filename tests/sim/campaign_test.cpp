@@ -120,7 +120,7 @@ TEST_CASE("a configuration without a fix to score is refused") {
   CHECK_THROWS_AS(campaign(scene), Error);
 }
 
-TEST_CASE("any number of threads gives the same bits") {
+TEST_CASE("any number of threads gives the same bits" * doctest::test_suite("heavy")) {
   const Scene scene = short_case(21);
   const auto one = bits(campaign(scene, {.threads = 1}));
   for (const int threads : {2, 3, 8, 0}) {
@@ -129,7 +129,8 @@ TEST_CASE("any number of threads gives the same bits") {
   }
 }
 
-TEST_CASE("a journal gives back what it holds, to the bit, and takes what is new") {
+TEST_CASE("a journal gives back what it holds, to the bit, and takes what is new" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   const CampaignOptions options{.threads = 2, .journal = dir / "journal"};
   CHECK(campaign(short_case(7), options).resumed == 0);
@@ -146,7 +147,8 @@ TEST_CASE("a journal gives back what it holds, to the bit, and takes what is new
   CHECK(bits(campaign(part, options)) == bits(campaign(part)));
 }
 
-TEST_CASE("the journals of ranks are read too, and a trial in two of them counts once") {
+TEST_CASE("the journals of ranks are read too, and a trial in two of them counts once" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   Scene scene = short_case(4);
   campaign(scene, {.journal = dir / "journal.rank0"});

@@ -80,7 +80,8 @@ Estimate start_of(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("the defined case: every cell of the reference's marine and tactical rows within 2 %") {
+TEST_CASE("the defined case: every cell of the reference's marine and tactical rows within 2 %" *
+          doctest::test_suite("heavy")) {
   constexpr std::array kIntervalsS{0.1, 1.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0};
   struct Row {
     ImuClass imu;
@@ -102,7 +103,8 @@ TEST_CASE("the defined case: every cell of the reference's marine and tactical r
   }
 }
 
-TEST_CASE("the error per axis tends to sqrt(2.5 * 0.05 T) for short intervals") {
+TEST_CASE("the error per axis tends to sqrt(2.5 * 0.05 T) for short intervals" *
+          doctest::test_suite("heavy")) {
   for (const ImuClass imu : {ImuClass::kMarine, ImuClass::kTactical}) {
     Scene scene = defined_case(imu, square_loop());
     scene.budget.metric = HorizontalMetric::kAxis;
@@ -168,7 +170,8 @@ TEST_CASE("the claimed covariance is the one that the filter itself computes") {
   CHECK(fix == 16);
 }
 
-TEST_CASE("the true covariance agrees with one dense covariance of 51 states") {
+TEST_CASE("the true covariance agrees with one dense covariance of 51 states" *
+          doctest::test_suite("heavy")) {
   const Scene scene = everything_wrong();
   const auto points = points_of(scene, Moment::kBeforeFix);
   test::DenseTruth reference(

@@ -94,7 +94,7 @@ TEST_CASE("curves start at zero, one point a second, and end past 100 s and 100 
   }
 }
 
-TEST_CASE("the study is the same in every run") {
+TEST_CASE("the study is the same in every run" * doctest::test_suite("heavy")) {
   DriftConfig config;
   config.trials = 4;
   config.max_time_s = 101.0;

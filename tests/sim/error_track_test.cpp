@@ -50,7 +50,8 @@ ErrorVector strapdown_error(const Trajectory& trajectory, double from_s, double 
 
 }  // namespace
 
-TEST_CASE("errors and sensor matrices act as on the nonlinear strapdown") {
+TEST_CASE("errors and sensor matrices act as on the nonlinear strapdown" *
+          doctest::test_suite("heavy")) {
   // From within a step on a straight to within another, over a turn.
   const Trajectory trajectory = square_loop();
   ErrorTrackConfig config;

@@ -42,7 +42,8 @@ Eigen::Vector3d summed_dv(ImuErrorSimulator& simulator, double dt_s, int count) 
 
 }  // namespace
 
-TEST_CASE("increments agree with the reference vectors at 400 and 100 Hz") {
+TEST_CASE("increments agree with the reference vectors at 400 and 100 Hz" *
+          doctest::test_suite("heavy")) {
   struct Case {
     const char* vector;
     Trajectory trajectory;
@@ -131,7 +132,7 @@ TEST_CASE("increments outside the trajectory, backwards or at no rate are refuse
   CHECK_THROWS_AS(true_increments(trajectory, 100.0, std::nan("")), Error);
 }
 
-TEST_CASE("the increments carry a strapdown back to the truth") {
+TEST_CASE("the increments carry a strapdown back to the truth" * doctest::test_suite("heavy")) {
   const Trajectory trajectories[] = {static_trajectory(), straight({.climb_rate_mps = 2.0}),
                                      circle(), car_drive({.duration_s = 200.0})};
   for (const Trajectory& trajectory : trajectories) {

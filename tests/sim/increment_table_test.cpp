@@ -24,7 +24,8 @@ void check_same(const ImuIncrement& a, const ImuIncrement& b) {
 
 }  // namespace
 
-TEST_CASE("a periodic motion is stored for one period, and later increments are right") {
+TEST_CASE("a periodic motion is stored for one period, and later increments are right" *
+          doctest::test_suite("heavy")) {
   const Trajectory loop = square_loop();
   // 30 Hz: increments of 33333333 and 33333334 ns, whose pattern repeats within the period.
   for (const double rate_hz : {50.0, 30.0}) {
@@ -39,7 +40,8 @@ TEST_CASE("a periodic motion is stored for one period, and later increments are 
   }
 }
 
-TEST_CASE("a motion that does not repeat within whole increments is stored as it is") {
+TEST_CASE("a motion that does not repeat within whole increments is stored as it is" *
+          doctest::test_suite("heavy")) {
   const Trajectory circle_without_end = circle({.radius_m = 100.0, .speed_mps = 20.0});
   for (const auto& [trajectory, rate_hz] :
        {std::pair{car_drive(), 50.0}, std::pair{circle_without_end, 50.0},

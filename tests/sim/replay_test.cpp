@@ -86,7 +86,8 @@ TEST_CASE("perfect sensors from a perfect start: an outage costs next to nothing
   CHECK(r.rms.epochs > 1900);
 }
 
-TEST_CASE("each outage is withheld alone, branching from the fully aided state") {
+TEST_CASE("each outage is withheld alone, branching from the fully aided state" *
+          doctest::test_suite("heavy")) {
   const test::TempDir dir;
   const ImuErrorModel imu = imu_class_model(ImuClass::kTactical, RangeEnd::kMid);
   ReplayInput input = record(dir, 240.0, imu);

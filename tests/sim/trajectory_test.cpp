@@ -96,7 +96,7 @@ TEST_CASE("the body turns at the angular rate") {
   }
 }
 
-TEST_CASE("truth agrees with the reference vectors") {
+TEST_CASE("truth agrees with the reference vectors" * doctest::test_suite("heavy")) {
   struct Case {
     const char* vector;
     Trajectory trajectory;

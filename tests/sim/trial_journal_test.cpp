@@ -77,7 +77,8 @@ TEST_CASE("every number comes back to the bit") {
   CHECK(!scores[3].finite);
 }
 
-TEST_CASE("cut anywhere, a journal keeps its whole lines and goes on") {
+TEST_CASE("cut anywhere, a journal keeps its whole lines and goes on" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   const std::string whole = read_file(three(dir));
   const std::size_t header = whole.find('\n') + 1;
@@ -97,7 +98,8 @@ TEST_CASE("cut anywhere, a journal keeps its whole lines and goes on") {
   }
 }
 
-TEST_CASE("a damaged line costs its trial alone, whichever byte is hit") {
+TEST_CASE("a damaged line costs its trial alone, whichever byte is hit" *
+          doctest::test_suite("heavy")) {
   const TempDir dir;
   const std::string whole = read_file(three(dir));
   const std::size_t second = whole.find("\n2 ") + 1;

@@ -74,7 +74,8 @@ Replayed without_last_fix(const Scene& scene, std::uint64_t seed, int last_fix) 
 
 }  // namespace
 
-TEST_CASE("the error before a fix is used: at its arrival, by a filter that never had it") {
+TEST_CASE("the error before a fix is used: at its arrival, by a filter that never had it" *
+          doctest::test_suite("heavy")) {
   for (const double latency_s : {0.0, 2.0, 12.0}) {
     CAPTURE(latency_s);
     Scene scene = loop_scene(60.0);
