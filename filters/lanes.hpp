@@ -76,7 +76,8 @@ template <class Scalar>
 
 /// The first `n` lanes of a, the others of b.
 template <class Scalar>
-[[gnu::always_inline]] inline VectorOf<Scalar> first_of(int n, const VectorOf<Scalar>& a, const VectorOf<Scalar>& b) {
+[[gnu::always_inline]] inline VectorOf<Scalar> first_of(int n, const VectorOf<Scalar>& a,
+                                                        const VectorOf<Scalar>& b) {
   return count_up<Scalar>() < static_cast<Scalar>(n) ? a : b;
 }
 
@@ -84,6 +85,18 @@ template <class Scalar>
 template <class Scalar>
 [[gnu::always_inline]] inline VectorOf<Scalar> only(int n, const VectorOf<Scalar>& v) {
   return count_up<Scalar>() == static_cast<Scalar>(n) ? v : VectorOf<Scalar>{};
+}
+
+/// The sum of the lanes.
+template <class Scalar>
+[[gnu::always_inline]] inline Scalar total(const VectorOf<Scalar>& v) {
+  if constexpr (kCount<Scalar> == 4) {
+    return (v[0] + v[1]) + (v[2] + v[3]);
+  } else if constexpr (kCount<Scalar> == 2) {
+    return v[0] + v[1];
+  } else {
+    return v;
+  }
 }
 
 /// std::array with the index that matrices have.
@@ -133,8 +146,9 @@ using Blocks = Array<VectorOf<Scalar>, kBlocks<Scalar, N>>;
 /// f(block, first row of the block) for each block of a column of N.
 template <class Scalar, int N, class F>
 [[gnu::always_inline]] inline void each_block(F&& f) {
-  unrolled<kBlocks<Scalar, N>>(
-      [&](auto b) __attribute__((always_inline)) { f(int{b}, start_of<Scalar, N>(b)); });
+  unrolled<kBlocks<Scalar, N>>([&](auto b) __attribute__((always_inline)) {
+    f(int{b}, start_of<Scalar, N>(b));
+  });
 }
 
 }  // namespace leeway::lanes

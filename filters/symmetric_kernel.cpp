@@ -1,8 +1,8 @@
 #include "leeway/filters/symmetric_kernel.hpp"
 
 #include <Eigen/Core>
-#include <cmath>
 
+#include "batch_gain.hpp"
 #include "lanes.hpp"
 #include "leeway/earth.hpp"
 #include "leeway/filters/vehicle_state.hpp"
@@ -19,8 +19,8 @@ using lanes::unrolled;
 /// sum += row of a block * lanes from `first` on.
 template <int first, class Scalar, class Block>
 [[gnu::always_inline]] inline void add_product(const Block& block, int row,
-                                                       const lanes::Column<Scalar>& in,
-                                                       VectorOf<Scalar>& sum) {
+                                               const lanes::Column<Scalar>& in,
+                                               VectorOf<Scalar>& sum) {
   unrolled<3>([&](auto k) __attribute__((always_inline)) {
     sum += static_cast<Scalar>(block(row, int{k})) * in[first + k];
   });
@@ -159,7 +159,7 @@ template <class Scalar, int N>
 void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Transition& Phi,
                          const ProcessNoise& noise) {
   lanes::propagate_symmetric<Scalar, N>(P, BlockRows<Scalar>(Phi),
-                                     diagonal_of<Scalar>(noise, Phi.dt_s, Phi.a_a, Phi.g_g));
+                                        diagonal_of<Scalar>(noise, Phi.dt_s, Phi.a_a, Phi.g_g));
 }
 
 template <class Scalar, int N>
@@ -168,7 +168,7 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& st
   const double a_a = bias_decay(step.dt_s, step.tau_a_s);
   const double g_g = bias_decay(step.dt_s, step.tau_g_s);
   lanes::propagate_symmetric<Scalar, N>(P, StepRows<Scalar>(step, a_a, g_g),
-                                     diagonal_of<Scalar>(noise, step.dt_s, a_a, g_g));
+                                        diagonal_of<Scalar>(noise, step.dt_s, a_a, g_g));
 }
 
 template <class Scalar, int N>
@@ -257,37 +257,11 @@ void SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& 
   }
 }
 
-/// S = H P H^T + 1 = L L^T; with V = P H^T L^-T, P <- P - V V^T and x <- x + V L^-1 (z - H x).
 template <class Scalar>
 void SymmetricKernel<Scalar>::update_batch(ErrorVector& x_hat, const MeasurementRows& H,
                                            const MeasurementValues& z) {
+  const BatchFactor<Scalar, kPaddedStates> V = batch_gain<Scalar, kPaddedStates>(P_, x_hat, H, z);
   const int rows = static_cast<int>(H.rows());
-  Eigen::Matrix<Scalar, kPaddedStates, kMaxRows> V;
-  Eigen::Matrix<Scalar, kMaxRows, kMaxRows> L;
-  Eigen::Matrix<Scalar, kMaxRows, 1> white;
-  for (int i = 0; i < rows; ++i) {
-    PaddedVector<Scalar> h;
-    h << H.row(i).transpose().template cast<Scalar>(), Scalar{0};
-    V.col(i) = P_.lazyProduct(h);
-    white(i) = static_cast<Scalar>(z(i) - H.row(i).dot(x_hat));
-    for (int j = 0; j <= i; ++j) L(i, j) = h.dot(V.col(j));
-    L(i, i) += 1;
-  }
-  // V <- V L^-T and white <- L^-1 white, as L is found column by column.
-  for (int j = 0; j < rows; ++j) {
-    const Scalar inverse = 1 / std::sqrt(L(j, j));
-    for (int i = j; i < rows; ++i) L(i, j) *= inverse;
-    V.col(j) *= inverse;
-    white(j) *= inverse;
-    for (int i = j + 1; i < rows; ++i) {
-      for (int k = j + 1; k <= i; ++k) L(i, k) -= L(i, j) * L(k, j);
-      V.col(i) -= L(i, j) * V.col(j);
-      white(i) -= L(i, j) * white(j);
-    }
-  }
-  for (int i = 0; i < rows; ++i) {
-    x_hat += (white(i) * V.col(i).template head<kErrorStates>()).template cast<double>();
-  }
   lanes::change_symmetric<Scalar, kPaddedStates>(
       P_, [&](int j, int b, const VectorOf<Scalar>& old) {
         VectorOf<Scalar> fresh = old;
@@ -306,11 +280,13 @@ template void propagate_symmetric<double, kErrorStates>(ErrorMatrix&, const Tran
                                                         const ProcessNoise&);
 template void propagate_symmetric<double, kErrorStates>(ErrorMatrix&, const ErrorDynamics&,
                                                         const ProcessNoise&);
-template ScalarGain<double, kErrorStates> update_symmetric<double, kErrorStates>(
-    ErrorMatrix&, const ErrorVector&, UpdateForm);
+template ScalarGain<double, kErrorStates> update_symmetric<double, kErrorStates>(ErrorMatrix&,
+                                                                                 const ErrorVector&,
+                                                                                 UpdateForm);
 template ScalarGain<double, kPaddedStates> update_symmetric<double, kPaddedStates>(
     PaddedMatrix<double>&, const PaddedVector<double>&, UpdateForm);
-template ScalarGain<double, kJointStates> update_symmetric<double, kJointStates>(
-    JointMatrix&, const JointVector&, UpdateForm);
+template ScalarGain<double, kJointStates> update_symmetric<double, kJointStates>(JointMatrix&,
+                                                                                 const JointVector&,
+                                                                                 UpdateForm);
 
 }  // namespace leeway

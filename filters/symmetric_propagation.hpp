@@ -4,9 +4,9 @@
 /// within registers, on the rows of what came of it. The second time only the lower half is formed.
 #pragma once
 
+#include "lanes.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
 #include "leeway/filters/error_state.hpp"
-#include "lanes.hpp"
 
 namespace leeway::lanes {
 
@@ -28,8 +28,8 @@ template <class Scalar, int N>
 using Transported = Array<Blocks<Scalar, N>, kMotionStates>;
 
 template <class Scalar, int N, class Rows>
-[[gnu::always_inline]] inline Transported<Scalar, N> transported(const Eigen::Matrix<Scalar, N, N>& P, const Rows& rows,
-                                const Diagonal<Scalar>& diagonal) {
+[[gnu::always_inline]] inline Transported<Scalar, N> transported(
+    const Eigen::Matrix<Scalar, N, N>& P, const Rows& rows, const Diagonal<Scalar>& diagonal) {
   Transported<Scalar, N> W;
   unrolled<kBlocks<Scalar, N>>([&](auto block) __attribute__((always_inline)) {
     constexpr int kStart = start_of<Scalar, N>(block);
@@ -69,11 +69,12 @@ template <int first, class Scalar, int N>
 
 /// The covariance of the biases with the motion, below the motion's columns.
 template <class Scalar, int N>
-[[gnu::always_inline]] inline void store_bias_rows(Eigen::Matrix<Scalar, N, N>& P, const Transported<Scalar, N>& W,
-                     const Diagonal<Scalar>& diagonal) {
+[[gnu::always_inline]] inline void store_bias_rows(Eigen::Matrix<Scalar, N, N>& P,
+                                                   const Transported<Scalar, N>& W,
+                                                   const Diagonal<Scalar>& diagonal) {
   unrolled<kBlocks<Scalar, N>>([&](auto block) __attribute__((always_inline)) {
     constexpr int kStart = start_of<Scalar, N>(block);
-    if constexpr (kStart + kCount<Scalar> > kBa) {
+    if constexpr (kStart + kCount < Scalar >> kBa) {
       const VectorOf<Scalar> decay = load(&diagonal.decay[kStart]);
       // Rows of the motion in the same block are written over by store_motion_rows().
       unrolled<kMotionStates>([&](auto i) __attribute__((always_inline)) {
@@ -83,11 +84,13 @@ template <class Scalar, int N>
   });
 }
 
-/// Rows `first` to `end` of P = W Phi^T: as much of the motion's columns as the lower half needs, and
-/// the columns of the biases.
+/// Rows `first` to `end` of P = W Phi^T: as much of the motion's columns as the lower half needs,
+/// and the columns of the biases.
 template <int first, int end, class Scalar, int N, class Rows>
-[[gnu::always_inline]] inline void store_motion_rows(Eigen::Matrix<Scalar, N, N>& P, const Transported<Scalar, N>& W, const Rows& rows,
-                       const Diagonal<Scalar>& diagonal) {
+[[gnu::always_inline]] inline void store_motion_rows(Eigen::Matrix<Scalar, N, N>& P,
+                                                     const Transported<Scalar, N>& W,
+                                                     const Rows& rows,
+                                                     const Diagonal<Scalar>& diagonal) {
   const Column<Scalar> in = columns_of<first, Scalar, N>(W);
   Column<Scalar> out;
   rows.attitude(in, out);
@@ -123,8 +126,8 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Rows& rows,
   unrolled<3 * kBlocksInTriad>([&](auto n) __attribute__((always_inline)) {
     constexpr int kTriad = 3 * (n / kBlocksInTriad);
     constexpr int kFirst = kTriad + n % kBlocksInTriad * kCount<Scalar>;
-    store_motion_rows<(kFirst < kLastFirst ? kFirst : kLastFirst), kTriad + 3, Scalar, N>(P, W, rows,
-                                                                                     diagonal);
+    store_motion_rows<(kFirst < kLastFirst ? kFirst : kLastFirst), kTriad + 3, Scalar, N>(
+        P, W, rows, diagonal);
   });
   for (int j = 0; j < kMotionStates; ++j) {
     for (int i = j + 1; i < kMotionStates; ++i) P(j, i) = P(i, j);

@@ -12,7 +12,8 @@ namespace leeway::lanes {
 /// Replaces the lower half of P by what `changed` makes of it, and the upper half by its mirror.
 /// @param changed  from a column, a block of rows and their present lanes, the lanes to be
 template <class Scalar, int N, class F>
-[[gnu::always_inline]] inline void change_symmetric(Eigen::Matrix<Scalar, N, N>& P, const F& changed) {
+[[gnu::always_inline]] inline void change_symmetric(Eigen::Matrix<Scalar, N, N>& P,
+                                                    const F& changed) {
   constexpr int kLast = kBlocks<Scalar, N> - 1;
   // How many lanes of the last block the one before it has dealt with.
   constexpr int kDone = (kLast + 1) * kCount<Scalar> - N;

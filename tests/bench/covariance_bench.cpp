@@ -1,10 +1,9 @@
 // What the covariance costs: a predict and a fix, by kernel and precision. Build with the preset
 // bench. Every kernel is restarted now and then, before its variances shrink or grow to nothing.
-#include "leeway/filters/covariance.hpp"
-
 #include <benchmark/benchmark.h>
 
 #include "bench/motion.hpp"
+#include "leeway/filters/covariance.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
 #include "leeway/filters/symmetric_kernel.hpp"
 

@@ -1,9 +1,8 @@
 // What one step of the strapdown costs, scheme by scheme. Build with the preset bench.
-#include "leeway/strapdown.hpp"
-
 #include <benchmark/benchmark.h>
 
 #include "bench/motion.hpp"
+#include "leeway/strapdown.hpp"
 
 namespace leeway {
 namespace {

@@ -45,16 +45,15 @@ using MeasurementValues = decltype(Measurement::innovation);
 /// h P h^T + 1; the update of a whole measurement runs the scalars in sequence unless a kernel says
 /// otherwise. The estimate x_hat is double in every kernel. Nothing allocates or throws.
 template <class K>
-concept CovarianceKernel =
-    std::constructible_from<K, const ErrorMatrix&> &&
+concept CovarianceKernel = std::constructible_from<K, const ErrorMatrix&> &&
     requires(K kernel, const K& same, const Transition& Phi, const ProcessNoise& noise,
              ErrorVector& x_hat, const ErrorVector& h, double z, const MeasurementRows& H,
              const MeasurementValues& values) {
-      { same.matrix() } -> std::same_as<ErrorMatrix>;
-      kernel.propagate(Phi, noise);
-      { kernel.update(x_hat, h, z) } -> std::same_as<double>;
-      kernel.update(x_hat, H, values);
-    };
+  { same.matrix() } -> std::same_as<ErrorMatrix>;
+  kernel.propagate(Phi, noise);
+  { kernel.update(x_hat, h, z) } -> std::same_as<double>;
+  kernel.update(x_hat, H, values);
+};
 
 /// The update of a whole measurement by scalars in sequence.
 template <class K>
