@@ -5,7 +5,6 @@
 #include "batch_gain.hpp"
 #include "lanes.hpp"
 #include "leeway/earth.hpp"
-#include "leeway/filters/vehicle_state.hpp"
 #include "symmetric_propagation.hpp"
 #include "symmetric_update.hpp"
 
@@ -171,61 +170,6 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& st
                                         diagonal_of<Scalar>(noise, step.dt_s, a_a, g_g));
 }
 
-template <class Scalar, int N>
-ScalarGain<Scalar, N> update_symmetric(Eigen::Matrix<Scalar, N, N>& P,
-                                       const Eigen::Matrix<Scalar, N, 1>& h, UpdateForm form) {
-  using lanes::each_block;
-  using lanes::load;
-  using lanes::store;
-  using Blocks = lanes::Blocks<Scalar, N>;
-  lanes::Array<int, N> observed;
-  int count = 0;
-  for (int k = 0; k < N; ++k) {
-    if (h(k) != 0) observed[count++] = k;
-  }
-
-  Blocks u;  // P h
-  each_block<Scalar, N>([&](int b, int) { u[b] = VectorOf<Scalar>{}; });
-  for (int n = 0; n < count; ++n) {
-    const Scalar* column = P.data() + N * observed[n];
-    const Scalar h_k = h(observed[n]);
-    each_block<Scalar, N>([&](int b, int row) { u[b] += h_k * load(column + row); });
-  }
-  ScalarGain<Scalar, N> gain;
-  Eigen::Matrix<Scalar, N, 1> Ph;
-  each_block<Scalar, N>([&](int b, int row) { store<Scalar>(Ph.data() + row, u[b]); });
-  Scalar variance = 1;
-  for (int n = 0; n < count; ++n) variance += h(observed[n]) * Ph(observed[n]);
-  gain.variance = variance;
-  const Scalar inverse = 1 / variance;
-  Blocks K;
-  each_block<Scalar, N>([&](int b, int row) {
-    K[b] = inverse * u[b];
-    store<Scalar>(gain.K.data() + row, K[b]);
-  });
-
-  if (form != UpdateForm::kJoseph) {
-    lanes::change_symmetric<Scalar, N>(
-        P, [&](int j, int b, const VectorOf<Scalar>& old) { return old - Ph(j) * K[b]; });
-    return gain;
-  }
-  // A = (I - K h) P; A h is formed from the rounded A: that is what keeps P positive definite where
-  // the expanded form, in which it cancels against K, does not.
-  Blocks residue;  // A h - K
-  each_block<Scalar, N>([&](int b, int) { residue[b] = -K[b]; });
-  for (int n = 0; n < count; ++n) {
-    const Scalar* column = P.data() + N * observed[n];
-    const Scalar h_k = h(observed[n]);
-    const Scalar Ph_k = Ph(observed[n]);
-    each_block<Scalar, N>(
-        [&](int b, int row) { residue[b] += h_k * (load(column + row) - Ph_k * K[b]); });
-  }
-  lanes::change_symmetric<Scalar, N>(P, [&](int j, int b, const VectorOf<Scalar>& old) {
-    return (old - Ph(j) * K[b]) - gain.K(j) * residue[b];
-  });
-  return gain;
-}
-
 template <class Scalar>
 void SymmetricKernel<Scalar>::propagate(const Transition& Phi, const ProcessNoise& noise) {
   propagate_symmetric<Scalar, kPaddedStates>(P_, Phi, noise);
@@ -280,13 +224,5 @@ template void propagate_symmetric<double, kErrorStates>(ErrorMatrix&, const Tran
                                                         const ProcessNoise&);
 template void propagate_symmetric<double, kErrorStates>(ErrorMatrix&, const ErrorDynamics&,
                                                         const ProcessNoise&);
-template ScalarGain<double, kErrorStates> update_symmetric<double, kErrorStates>(ErrorMatrix&,
-                                                                                 const ErrorVector&,
-                                                                                 UpdateForm);
-template ScalarGain<double, kPaddedStates> update_symmetric<double, kPaddedStates>(
-    PaddedMatrix<double>&, const PaddedVector<double>&, UpdateForm);
-template ScalarGain<double, kJointStates> update_symmetric<double, kJointStates>(JointMatrix&,
-                                                                                 const JointVector&,
-                                                                                 UpdateForm);
 
 }  // namespace leeway
