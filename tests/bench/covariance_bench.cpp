@@ -5,7 +5,10 @@
 #include "bench/motion.hpp"
 #include "leeway/filters/covariance.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
+#include "leeway/filters/dense_kernel.hpp"
+#include "leeway/filters/square_root_kernel.hpp"
 #include "leeway/filters/symmetric_kernel.hpp"
+#include "leeway/filters/ud_kernel.hpp"
 
 namespace leeway {
 namespace {
@@ -115,6 +118,16 @@ BENCHMARK(predict_step<SymmetricKernel<float>>);
 BENCHMARK(predict_advance<SymmetricKernel<double>>);
 BENCHMARK(predict_aggregated<SymmetricKernel<double>>);
 BENCHMARK(predict_aggregated<SymmetricKernel<float>>);
+BENCHMARK(predict_aggregated<DenseKernel<double>>);
+BENCHMARK(predict_aggregated<UdKernel<double>>);
+BENCHMARK(predict_aggregated<UdKernel<float>>);
+BENCHMARK(predict_aggregated<SquareRootKernel<double>>);
+BENCHMARK(predict_aggregated<SquareRootKernel<float>>);
+BENCHMARK(fix<DenseKernel<double>, UpdateForm::kJoseph>);
+BENCHMARK(fix<UdKernel<double>>);
+BENCHMARK(fix<UdKernel<float>>);
+BENCHMARK(fix<SquareRootKernel<double>>);
+BENCHMARK(fix<SquareRootKernel<float>>);
 BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kJoseph>);
 BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kSimple>);
 BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kBatch>);
