@@ -3,10 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "leeway/filters/symmetric_kernel.hpp"
+
 namespace leeway {
 namespace {
 
-using AttitudeRows = Eigen::Matrix<double, 3, kErrorStates>;
 using MotionRows = Eigen::Matrix<double, 6, kErrorStates>;  // of velocity and position
 
 MotionRows motion_rows(const Transition& Phi) {
@@ -16,43 +17,12 @@ MotionRows motion_rows(const Transition& Phi) {
   return M;
 }
 
-/// The sum of the columns with these weights: a product in the order in which six rows are three
-/// pairs, which halves its instructions.
-template <class Weights>
-Eigen::Matrix<double, 6, 1> combined_columns(const MotionRows& m, const Weights& weights) {
-  Eigen::Matrix<double, 6, 1> sum = weights[0] * m.col(0);
-  for (int k = 1; k < kErrorStates; ++k) sum += weights[k] * m.col(k);
-  return sum;
-}
-
-void add_noise(ErrorMatrix& P, const ProcessNoise& noise, double dt_s) {
-  P.diagonal().segment<3>(kPsi).array() += noise.attitude_rad2_per_s * dt_s;
-  P.diagonal().segment<3>(kDv).array() += noise.velocity_m2_per_s3 * dt_s;
-  P.diagonal().segment<3>(kBa).array() += noise.b_a_m2_per_s5 * dt_s;
-  P.diagonal().segment<3>(kBg).array() += noise.b_g_rad2_per_s3 * dt_s;
-}
-
-template <int N>
-void mirror_upper(Eigen::Matrix<double, N, N>& P) {
-  for (int j = 0; j < N; ++j) {
-    for (int i = j + 1; i < N; ++i) P(i, j) = P(j, i);
-  }
-}
-
 template <int N>
 double scalar_update_of(Eigen::Matrix<double, N, N>& P, Eigen::Matrix<double, N, 1>& x_hat,
                         const Eigen::Matrix<double, N, 1>& h, double z) {
-  const Eigen::Matrix<double, N, 1> u = P * h;
-  const double s = h.dot(u) + 1.0;
-  const Eigen::Matrix<double, N, 1> K = u / s;
-  // A h is formed from the rounded A: that is what keeps P positive definite where the expanded
-  // form, in which it cancels against K, does not.
-  const Eigen::Matrix<double, N, N> A = P - K * u.transpose();
-  const Eigen::Matrix<double, N, 1> residue = A * h - K;
-  P = A - residue * K.transpose();
-  mirror_upper(P);
-  x_hat += K * (z - h.dot(x_hat));
-  return s;
+  const ScalarGain<double, N> gain = update_symmetric<double, N>(P, h, UpdateForm::kJoseph);
+  x_hat += gain.K * (z - h.dot(x_hat));
+  return gain.variance;
 }
 
 struct BiasDrive {
@@ -85,31 +55,11 @@ ProcessNoise process_noise(const ImuErrorModel& model) {
 }
 
 void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise) {
-  add_noise(P, noise, 0.5 * Phi.dt_s);
+  propagate_symmetric<double, kErrorStates>(P, Phi, noise);
+}
 
-  // W = Phi P without the bias rows, which only scale.
-  const AttitudeRows W_psi = Phi.psi_psi * P.middleRows<3>(kPsi) + Phi.psi_g * P.middleRows<3>(kBg);
-  const MotionRows M = motion_rows(Phi);
-  MotionRows W;
-  for (int j = 0; j < kErrorStates; ++j) W.col(j) = combined_columns(M, P.col(j));
-
-  // P = W Phi^T, the upper blocks.
-  P.block<3, 3>(kPsi, kPsi) = W_psi.middleCols<3>(kPsi) * Phi.psi_psi.transpose() +
-                              W_psi.middleCols<3>(kBg) * Phi.psi_g.transpose();
-  for (int i = 0; i < M.rows(); ++i) {
-    P.block<3, 1>(kPsi, kDv + i) = W_psi * M.row(i).transpose();
-    P.block<6, 1>(kDv, kDv + i) = combined_columns(W, M.row(i));
-  }
-  P.block<3, 3>(kPsi, kBa) = Phi.a_a * W_psi.middleCols<3>(kBa);
-  P.block<3, 3>(kPsi, kBg) = Phi.g_g * W_psi.middleCols<3>(kBg);
-  P.block<6, 3>(kDv, kBa) = Phi.a_a * W.middleCols<3>(kBa);
-  P.block<6, 3>(kDv, kBg) = Phi.g_g * W.middleCols<3>(kBg);
-  P.block<3, 3>(kBa, kBa) *= Phi.a_a * Phi.a_a;
-  P.block<3, 3>(kBa, kBg) *= Phi.a_a * Phi.g_g;
-  P.block<3, 3>(kBg, kBg) *= Phi.g_g * Phi.g_g;
-  mirror_upper(P);
-
-  add_noise(P, noise, 0.5 * Phi.dt_s);
+void propagate(ErrorMatrix& P, const ErrorDynamics& step, const ProcessNoise& noise) {
+  propagate_symmetric<double, kErrorStates>(P, step, noise);
 }
 
 void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T) {

@@ -126,16 +126,19 @@ void Ekf::predict(const ImuIncrement& inc) {
 
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
 
-  const double a_a = Phi_.a_a;
-  const double g_g = Phi_.g_g;
-  advance(Phi_, {.dt_s = inc.dt_s,
-                 .C_eb_mean = step.C_eb_mean,
-                 .dv_f_e_mps = step.dv_f_e_mps,
-                 .gravity_gradient_e = gravity_gradient_e_,
-                 .tau_a_s = noise_.tau_a_s,
-                 .tau_g_s = noise_.tau_g_s});
-  estimate_.bias.b_a_mps2 *= Phi_.a_a / a_a;
-  estimate_.bias.b_g_radps *= Phi_.g_g / g_g;
+  const ErrorDynamics dynamics{.dt_s = inc.dt_s,
+                               .C_eb_mean = step.C_eb_mean,
+                               .dv_f_e_mps = step.dv_f_e_mps,
+                               .gravity_gradient_e = gravity_gradient_e_,
+                               .tau_a_s = noise_.tau_a_s,
+                               .tau_g_s = noise_.tau_g_s};
+  estimate_.bias.b_a_mps2 *= bias_decay(inc.dt_s, noise_.tau_a_s);
+  estimate_.bias.b_g_radps *= bias_decay(inc.dt_s, noise_.tau_g_s);
+  if (config_.covariance_interval_s == 0.0 && Phi_.dt_s == 0.0 && !estimates_vehicle_) {
+    propagate(P_, dynamics, noise_);  // Phi of the one increment need not be formed
+    return;
+  }
+  advance(Phi_, dynamics);
   // Half an increment of slack, so that rounding does not shift the moment.
   if (Phi_.dt_s + 0.5 * inc.dt_s > config_.covariance_interval_s) flush();
 }

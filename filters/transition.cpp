@@ -47,16 +47,16 @@ void advance_motion(Eigen::Matrix3d& v, Eigen::Matrix3d& r, const Eigen::Matrix3
   r = r_mid + step.half_dt_s * v;
 }
 
-double decay(double dt_s, double tau_s) {
+}  // namespace
+
+double bias_decay(double dt_s, double tau_s) {
   return std::isinf(tau_s) ? 1.0 : std::exp(-dt_s / tau_s);
 }
 
-}  // namespace
-
 void advance(Transition& Phi, const ErrorDynamics& step) {
   const double dt_s = step.dt_s;
-  const double a_a_end = Phi.a_a * decay(dt_s, step.tau_a_s);
-  const double g_g_end = Phi.g_g * decay(dt_s, step.tau_g_s);
+  const double a_a_end = Phi.a_a * bias_decay(dt_s, step.tau_a_s);
+  const double g_g_end = Phi.g_g * bias_decay(dt_s, step.tau_g_s);
   const Eigen::Matrix3d C_dt = dt_s * step.C_eb_mean;
 
   const Eigen::Matrix3d psi_psi_old = Phi.psi_psi;

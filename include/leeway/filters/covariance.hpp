@@ -34,6 +34,10 @@ ProcessNoise process_noise(const ImuErrorModel& model);
 /// Source: Groves (2013) (3.46), "Phi (P + Q/2) Phi^T + Q/2".
 void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise);
 
+/// The same for the Phi of one increment, which is not formed: cheaper than advance() and
+/// propagate() where P follows every increment.
+void propagate(ErrorMatrix& P, const ErrorDynamics& step, const ProcessNoise& noise);
+
 /// What becomes of P when the three errors from `row` on become T times what they are.
 void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T);
 

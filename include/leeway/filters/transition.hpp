@@ -33,6 +33,9 @@ struct ErrorDynamics {
   double tau_g_s{std::numeric_limits<double>::infinity()};
 };
 
+/// What is left of a bias of this correlation time: exp(-dt / tau), 1 for an infinite time.
+double bias_decay(double dt_s, double tau_s);
+
 /// Extends Phi by one increment: Phi <- Phi(step) Phi. Second order in the step length.
 /// Source: Groves (2013) (14.18)-(14.21), (14.48)-(14.49) with the gradient of the normal field,
 /// signs by error_state.hpp.

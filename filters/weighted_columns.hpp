@@ -1,0 +1,102 @@
+/// @file
+/// Phi (P + Q/2) Phi^T + Q/2 for a P in factors: the same as W diag(weight) W^T, with W the columns
+/// of Phi times the factor, of Phi for the noise before and of the identity for the noise after.
+/// Triangularizing W gives the new factor.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "lanes.hpp"
+#include "leeway/filters/covariance.hpp"
+#include "leeway/filters/covariance_kernel.hpp"
+#include "leeway/filters/error_state.hpp"
+#include "leeway/filters/transition.hpp"
+
+namespace leeway::lanes {
+
+inline constexpr int kNoises = 12;  // attitude, velocity and both biases
+/// Noise before, noise after and the factor; the last column is zero, for whole blocks of lanes.
+inline constexpr int kFactorColumn = 2 * kNoises;
+inline constexpr int kWeightedColumns = kFactorColumn + kErrorStates + 1;
+
+template <class Scalar>
+struct WeightedColumns {
+  using Row = Array<Scalar, kWeightedColumns>;
+  Array<Row, kErrorStates> W;  // its rows, which triangularization works on
+  Row weight;
+};
+
+/// sum of a * b over the first columns, `count` rounded up to whole blocks.
+template <class Scalar>
+Scalar dot(const Array<Scalar, kWeightedColumns>& a, const Array<Scalar, kWeightedColumns>& b,
+           int count) {
+  VectorOf<Scalar> sum{};
+  for (int k = 0; k < count; k += kCount<Scalar>) sum += load(&a[k]) * load(&b[k]);
+  return total<Scalar>(sum);
+}
+
+/// a += factor * b over the first columns, `count` rounded up to whole blocks.
+template <class Scalar>
+void add_scaled(Array<Scalar, kWeightedColumns>& a, Scalar factor,
+                const Array<Scalar, kWeightedColumns>& b, int count) {
+  for (int k = 0; k < count; k += kCount<Scalar>) {
+    store<Scalar>(&a[k], load(&a[k]) + factor * load(&b[k]));
+  }
+}
+
+/// Phi x.
+template <class Scalar>
+CovarianceVector<Scalar> transported(const Transition& Phi, const CovarianceVector<Scalar>& x) {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  const Vector3 psi = x.template segment<3>(kPsi);
+  const Vector3 v = x.template segment<3>(kDv);
+  const Vector3 r = x.template segment<3>(kDr);
+  const Vector3 a = x.template segment<3>(kBa);
+  const Vector3 g = x.template segment<3>(kBg);
+  const auto times = [](const Eigen::Matrix3d& block, const Vector3& y) {
+    return Vector3(block.cast<Scalar>() * y);
+  };
+  CovarianceVector<Scalar> result;
+  result.template segment<3>(kPsi) = times(Phi.psi_psi, psi) + times(Phi.psi_g, g);
+  result.template segment<3>(kDv) = times(Phi.v_psi, psi) + times(Phi.v_v, v) + times(Phi.v_r, r) +
+                                    times(Phi.v_a, a) + times(Phi.v_g, g);
+  result.template segment<3>(kDr) = times(Phi.r_psi, psi) + times(Phi.r_v, v) + times(Phi.r_r, r) +
+                                    times(Phi.r_a, a) + times(Phi.r_g, g);
+  result.template segment<3>(kBa) = static_cast<Scalar>(Phi.a_a) * a;
+  result.template segment<3>(kBg) = static_cast<Scalar>(Phi.g_g) * g;
+  return result;
+}
+
+/// @param factor         upper triangular
+/// @param factor_weight  weights of its columns
+template <class Scalar>
+WeightedColumns<Scalar> weighted_columns(const Transition& Phi, const ProcessNoise& noise,
+                                         const CovarianceMatrix<Scalar>& factor,
+                                         const CovarianceVector<Scalar>& factor_weight) {
+  WeightedColumns<Scalar> result;
+  const auto set = [&](int column, const CovarianceVector<Scalar>& values, Scalar weight) {
+    for (int i = 0; i < kErrorStates; ++i) result.W[i][column] = values(i);
+    result.weight[column] = weight;
+  };
+  constexpr std::array kFirst{kPsi, kDv, kBa, kBg};
+  const std::array density{noise.attitude_rad2_per_s, noise.velocity_m2_per_s3, noise.b_a_m2_per_s5,
+                           noise.b_g_rad2_per_s3};
+  int column = 0;
+  for (std::size_t group = 0; group < kFirst.size(); ++group) {
+    const auto half_q = static_cast<Scalar>(0.5 * Phi.dt_s * density[group]);
+    for (int i = kFirst[group]; i < kFirst[group] + 3; ++i) {
+      const CovarianceVector<Scalar> unit = CovarianceVector<Scalar>::Unit(i);
+      set(column++, transported<Scalar>(Phi, unit), half_q);
+      set(column++, unit, half_q);
+    }
+  }
+  for (int j = 0; j < kErrorStates; ++j) {
+    const CovarianceVector<Scalar> values = factor.col(j);
+    set(kFactorColumn + j, transported<Scalar>(Phi, values), factor_weight(j));
+  }
+  set(kWeightedColumns - 1, CovarianceVector<Scalar>::Zero(), 0);
+  return result;
+}
+
+}  // namespace leeway::lanes

@@ -1,0 +1,75 @@
+/// @file
+/// The default covariance kernel: P in full storage, symmetric to the bit, the blocks of Phi that
+/// exist, half of every symmetric product. Its double instance is what covariance.hpp runs on.
+/// Instantiated for float, double and long double; P, N x N, of 15 errors or of 15 and the
+/// vehicle's.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "leeway/filters/covariance.hpp"
+#include "leeway/filters/covariance_kernel.hpp"
+#include "leeway/filters/error_state.hpp"
+#include "leeway/filters/transition.hpp"
+
+namespace leeway {
+
+/// P in 16 rows and columns, the last of zeros: columns that vectors of 4 or 8 numbers divide.
+inline constexpr int kPaddedStates = kErrorStates + 1;
+template <class Scalar>
+using PaddedMatrix = Eigen::Matrix<Scalar, kPaddedStates, kPaddedStates>;
+template <class Scalar>
+using PaddedVector = Eigen::Matrix<Scalar, kPaddedStates, 1>;
+
+/// P <- Phi (P + Q/2) Phi^T + Q/2. N is 15 or 16.
+template <class Scalar, int N>
+void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Transition& Phi,
+                         const ProcessNoise& noise);
+
+/// The same for the Phi of one increment, which is not formed: its rows act on P as advance() has
+/// them act on Phi.
+template <class Scalar, int N>
+void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& step,
+                         const ProcessNoise& noise);
+
+/// What a scalar measurement of unit variance tells: the gain, and the innovation's variance.
+template <class Scalar, int N>
+struct ScalarGain {
+  Eigen::Matrix<Scalar, N, 1> K;
+  Scalar variance;
+};
+
+/// Takes h into P, exactly symmetric before and after. Skips the zeros of h.
+/// @param form  kSimple or kJoseph
+template <class Scalar, int N>
+ScalarGain<Scalar, N> update_symmetric(Eigen::Matrix<Scalar, N, N>& P,
+                                       const Eigen::Matrix<Scalar, N, 1>& h, UpdateForm form);
+
+template <class Scalar>
+class SymmetricKernel {
+ public:
+  explicit SymmetricKernel(const ErrorMatrix& P, UpdateForm form = UpdateForm::kJoseph)
+      : form_(form) {
+    P_.setZero();
+    P_.template topLeftCorner<kErrorStates, kErrorStates>() = P.cast<Scalar>();
+  }
+
+  ErrorMatrix matrix() const {
+    return P_.template topLeftCorner<kErrorStates, kErrorStates>().template cast<double>();
+  }
+
+  void propagate(const Transition& Phi, const ProcessNoise& noise);
+  void propagate(const ErrorDynamics& step, const ProcessNoise& noise);
+
+  /// With UpdateForm::kBatch a single row is taken by the simple form, which is the same.
+  double update(ErrorVector& x_hat, const ErrorVector& h, double z);
+  void update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+
+ private:
+  void update_batch(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+
+  PaddedMatrix<Scalar> P_;
+  UpdateForm form_;
+};
+
+}  // namespace leeway

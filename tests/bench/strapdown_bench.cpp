@@ -1,0 +1,35 @@
+// What one step of the strapdown costs, scheme by scheme. Build with the preset bench.
+#include <benchmark/benchmark.h>
+
+#include "bench/motion.hpp"
+#include "leeway/strapdown.hpp"
+
+namespace leeway {
+namespace {
+
+void step(benchmark::State& state, const StrapdownPolicy& policy) {
+  const StrapdownFunction strapdown = strapdown_function(policy);
+  NavState nav = test::bench_start().nav;
+  ImuHistory history;
+  ImuIncrement inc = test::bench_increment();
+  for (auto _ : state) {
+    inc.time = nav.time + duration_from_seconds(inc.dt_s);
+    benchmark::DoNotOptimize(strapdown(nav, inc, history));
+  }
+}
+
+BENCHMARK_CAPTURE(step, explicit_euler, {.scheme = Scheme::kExplicitEuler});
+BENCHMARK_CAPTURE(step, semi_implicit_euler, {.scheme = Scheme::kSemiImplicitEuler});
+BENCHMARK_CAPTURE(step, trapezoid, {.scheme = Scheme::kTrapezoid});
+BENCHMARK_CAPTURE(step, one_sample, {.scheme = Scheme::kOneSample});
+BENCHMARK_CAPTURE(step, one_sample_j2,
+                  {.scheme = Scheme::kOneSample, .gravity = GravityModel::kJ2});
+BENCHMARK_CAPTURE(step, two_sample, {.scheme = Scheme::kTwoSample});
+BENCHMARK_CAPTURE(step, two_sample_j2,
+                  {.scheme = Scheme::kTwoSample, .gravity = GravityModel::kJ2});
+BENCHMARK_CAPTURE(step, runge_kutta_4, {.scheme = Scheme::kRungeKutta4});
+
+}  // namespace
+}  // namespace leeway
+
+BENCHMARK_MAIN();
