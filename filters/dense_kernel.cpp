@@ -44,7 +44,7 @@ void DenseKernel<Scalar>::propagate(const Transition& Phi, const ProcessNoise& n
 
 template <class Scalar>
 double DenseKernel<Scalar>::update(ErrorVector& x_hat, const ErrorVector& h, double z) {
-  const CovarianceVector<Scalar> row = h.cast<Scalar>();
+  const auto& row = h.cast<Scalar>();
   const CovarianceVector<Scalar> Ph = P_.lazyProduct(row);
   const Scalar variance = row.dot(Ph) + 1;
   const CovarianceVector<Scalar> K = Ph / variance;
