@@ -19,6 +19,7 @@ namespace {
 using test::antenna_rows;
 using test::positive_definite;
 using test::prior;
+using test::random_covariance;
 using test::random_dynamics;
 using test::scaled_distance;
 
@@ -28,15 +29,6 @@ static_assert(CovarianceKernel<UdKernel<double>>);
 static_assert(CovarianceKernel<SquareRootKernel<double>>);
 
 constexpr ProcessNoise kNoise{1e-6, 1e-4, 1e-5, 1e-9, 50.0, 100.0};
-
-ErrorMatrix random_covariance(std::uint64_t seed) {
-  sim::Random random(seed, 5);
-  ErrorMatrix A;
-  for (double& a : A.reshaped()) a = random.normal();
-  const ErrorMatrix S = test::jacobian_steps(1e-2, 0.1, 2.0, 0.05, 1e-3).asDiagonal() * A;
-  const ErrorMatrix P = S * S.transpose();
-  return 0.5 * (P + P.transpose());
-}
 
 /// Ten different steps in a row.
 Transition random_transition(std::uint64_t seed) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "filters/kernel_cases.hpp"
 #include "filters/random_state.hpp"
 #include "leeway/error.hpp"
 #include "leeway/filters/ekf.hpp"
@@ -20,21 +21,12 @@ namespace leeway {
 namespace {
 
 using test::near;
+using test::positive_definite;
+using test::random_covariance;
 using test::random_estimate;
 using test::random_vector;
 using test::scaled_distance;
-
-/// Sigmas of a filter at work: rad, m/s, m, m/s^2, rad/s.
-ErrorVector working_sigmas() { return test::jacobian_steps(1e-2, 0.1, 2.0, 0.05, 1e-3); }
-
-ErrorMatrix random_covariance(std::uint64_t seed) {
-  sim::Random random(seed, 5);
-  ErrorMatrix A;
-  for (double& a : A.reshaped()) a = random.normal();
-  const ErrorMatrix S = working_sigmas().asDiagonal() * A;
-  const ErrorMatrix P = S * S.transpose();
-  return 0.5 * (P + P.transpose());
-}
+using test::working_sigmas;
 
 /// Constant dynamics at a random place; the biases as given.
 struct Scene {
@@ -80,13 +72,6 @@ Discrete van_loan(const Scene& s, double t_s) {
   const Pair E = M.exp();
   const ErrorMatrix Phi = E.bottomRightCorner<kErrorStates, kErrorStates>().transpose();
   return {Phi, Phi * E.topRightCorner<kErrorStates, kErrorStates>()};
-}
-
-bool positive_definite(const ErrorMatrix& P) {
-  // Scaled to a unit diagonal, so that units do not decide.
-  const ErrorVector d = P.diagonal().cwiseSqrt().cwiseInverse();
-  const ErrorMatrix scaled = d.asDiagonal() * P * d.asDiagonal();
-  return Eigen::LLT<ErrorMatrix>(scaled).info() == Eigen::Success;
 }
 
 bool exactly_symmetric(const ErrorMatrix& P) { return P == P.transpose(); }

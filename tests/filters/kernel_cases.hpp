@@ -50,6 +50,18 @@ inline ErrorMatrix prior(double psi, double dv, double dr, double b_a, double b_
   return jacobian_steps(psi, dv, dr, b_a, b_g).cwiseAbs2().asDiagonal();
 }
 
+/// Sigmas of a filter at work: rad, m/s, m, m/s^2, rad/s.
+inline ErrorVector working_sigmas() { return jacobian_steps(1e-2, 0.1, 2.0, 0.05, 1e-3); }
+
+inline ErrorMatrix random_covariance(std::uint64_t seed) {
+  sim::Random random(seed, 5);
+  ErrorMatrix A;
+  for (double& a : A.reshaped()) a = random.normal();
+  const ErrorMatrix S = working_sigmas().asDiagonal() * A;
+  const ErrorMatrix P = S * S.transpose();
+  return 0.5 * (P + P.transpose());
+}
+
 inline bool positive_definite(const ErrorMatrix& P) {
   // Scaled to a unit diagonal, so that units do not decide.
   if (!(P.diagonal().minCoeff() > 0.0) || !P.allFinite()) return false;
