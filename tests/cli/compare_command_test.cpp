@@ -93,9 +93,4 @@ TEST_CASE("compare: a file that cannot be written is no success" * doctest::test
   CHECK(contains(outcome.err, "cannot be written"));
 }
 
-TEST_CASE("compare of a scene that no filter survives has no answer" *
-          doctest::test_suite("heavy")) {
-  CHECK(leeway("compare --help").exit_code == 0);
-}
-
 }  // namespace leeway::test
