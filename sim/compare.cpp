@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "campaign_sums.hpp"

@@ -67,10 +67,9 @@ bool has_update_forms(KernelForm kernel) {
 }
 
 std::string name(const Variant& v, double imu_rate_hz) {
-  const std::string strapdown =
-      fmt::format("{}/{}/{}/{:g}Hz", word(v.strapdown.scheme), word(v.strapdown.gravity),
-                  word(v.strapdown.rotation), imu_rate_hz / v.imu_divider);
-  return strapdown + (v.estimator == Estimator::kReset ? " reset" : " " + covariance_name(v));
+  return fmt::format("{}/{}/{}/{:g}Hz {}", word(v.strapdown.scheme), word(v.strapdown.gravity),
+                     word(v.strapdown.rotation), imu_rate_hz / v.imu_divider,
+                     v.estimator == Estimator::kReset ? "reset" : covariance_name(v));
 }
 
 std::vector<Variant> strapdown_variants(const std::vector<int>& imu_dividers) {
