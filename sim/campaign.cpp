@@ -12,7 +12,6 @@
 #include "campaign_sums.hpp"
 #include "fingerprint.hpp"
 #include "leeway/error.hpp"
-#include "leeway/filters/chi_square.hpp"
 #include "leeway/sim/parallel.hpp"
 #include "leeway/sim/trial.hpp"
 #include "leeway/sim/trial_journal.hpp"
@@ -102,43 +101,6 @@ class Ledger {
   CampaignSums& sums_;
   std::optional<TrialJournal>& journal_;
 };
-
-double root_mean(double sum, std::int64_t count) {
-  return std::sqrt(sum / static_cast<double>(count));
-}
-
-CampaignResult result_of(const CampaignSums& sums) {
-  CampaignResult r;
-  r.trials = sums.trials;
-  r.epochs = sums.epochs;
-  const auto epochs = static_cast<double>(sums.epochs);
-  ExactSum error_sq_m2 = sums.error_sq_n_m2[0];
-  error_sq_m2.add(sums.error_sq_n_m2[1]);
-  ExactSum variance_m2 = sums.variance_n_m2[0];
-  variance_m2.add(sums.variance_n_m2[1]);
-  r.rms_horizontal_m = root_mean(error_sq_m2.value(), sums.epochs);
-  r.sigma_horizontal_m = root_mean(variance_m2.value(), sums.epochs);
-  r.rms_over_sigma = r.rms_horizontal_m / r.sigma_horizontal_m;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<Eigen::Index>(axis);
-    r.rms_n_m[i] = root_mean(sums.error_sq_n_m2[axis].value(), sums.epochs);
-    r.sigma_n_m[i] = root_mean(sums.variance_n_m2[axis].value(), sums.epochs);
-  }
-  r.mean_nees = sums.nees.value() / epochs;
-  const std::int64_t scored = sums.trials - sums.not_finite;
-  const int dof = kErrorStates * static_cast<int>(std::max<std::int64_t>(scored, 1));
-  r.nees_low = kErrorStates * chi_square_threshold(0.975, dof) / dof;
-  r.nees_high = kErrorStates * chi_square_threshold(0.025, dof) / dof;
-  r.nis_over_dof = sums.nis.value() / static_cast<double>(sums.nis_dof);
-  r.beyond_r95 = static_cast<double>(sums.beyond_r95) / epochs;
-  r.fused = sums.fused;
-  r.gated = sums.gated;
-  r.diverged = sums.diverged;
-  r.not_finite = sums.not_finite;
-  r.worst_horizontal_m = sums.worst_m;
-  r.worst_seed = sums.worst_seed;
-  return r;
-}
 
 /// Calls progress with what is finished, and how long the rest takes at the pace so far.
 std::function<void(std::size_t)> reporter(const CampaignOptions& options, const Ranks& ranks,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "leeway/sim/campaign.hpp"
 #include "leeway/sim/exact_sum.hpp"
 #include "leeway/sim/trial.hpp"
 
@@ -36,5 +37,8 @@ struct CampaignSums {
  private:
   void consider_worst(double horizontal_m, std::uint64_t seed);
 };
+
+/// What the sums say; `resumed` is not among them.
+CampaignResult result_of(const CampaignSums& sums);
 
 }  // namespace leeway::sim

@@ -1,23 +1,17 @@
 #include "leeway/sim/trial.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <string>
 
 #include "leeway/error.hpp"
-#include "leeway/filters/horizontal.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/random.hpp"
 #include "leeway/sim/receiver.hpp"
+#include "trial_parts.hpp"
 
 namespace leeway::sim {
 namespace {
-
-constexpr double kDivergedSigmas = 10.0;
 
 [[noreturn]] void refuse(const std::string& what) { throw Error("Monte Carlo trial: " + what); }
 
@@ -37,38 +31,9 @@ const Scene& checked(const Scene& scene) {
   return scene;
 }
 
-/// A start whose error is drawn from P: the estimate e with difference(truth, e) = x, x ~ N(0, P).
-Estimate drawn_start(const Estimate& truth, const ErrorMatrix& P, Random random) {
-  ErrorVector unit;
-  for (int i = 0; i < kErrorStates; ++i) unit(i) = random.normal();
-  const Eigen::LDLT<ErrorMatrix> ldlt(P);
-  const ErrorVector x =
-      ldlt.transpositionsP().transpose() *
-      (ldlt.matrixL() * (ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * unit));
-  Estimate estimate = truth;
-  inject(estimate, -x);
-  return estimate;
-}
-
-/// x^T P^-1 x in units of the sigmas, which differ by 1e9; NaN unless P is positive.
-double normalized_square(const ErrorVector& x, const ErrorMatrix& P) {
-  const ErrorVector per_sigma = P.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<ErrorMatrix> llt(per_sigma.asDiagonal() * P * per_sigma.asDiagonal());
-  if (llt.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  return llt.matrixL().solve(per_sigma.cwiseProduct(x)).squaredNorm();
-}
-
 Ekf started(const TrialPlan& plan, std::uint64_t seed) {
-  const Scene& scene = plan.scene();
-  const ImuErrorModel& believed = scene.filter.imu;
-  Estimate start;
-  start.nav = truth_at(scene.trajectory, 0.0).nav;
-  start.bias = {believed.accelerometer.bias, believed.gyro.bias};
-  const ErrorMatrix P = initial_covariance(start, plan.initial(), believed);
-  // What the sensors draw beyond the known biases is already the error of the start.
-  ErrorMatrix P_nav = P;
-  P_nav.bottomRightCorner<6, 6>().setZero();
-  return {scene.filter, drawn_start(start, P_nav, Random(seed, 0, kInitialStateStream)), P};
+  const TrialStart start = trial_start(plan, seed);
+  return {plan.scene().filter, start.estimate, start.P};
 }
 
 class Trial {
@@ -140,27 +105,8 @@ void Trial::score(const Ekf& filter) {
   Estimate truth;
   truth.nav = truth_at(plan_.scene().trajectory, to_seconds(filter.estimate().nav.time)).nav;
   truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
-  const ErrorVector x = difference(truth, filter.estimate());
   const ErrorMatrix P = filter.covariance();
-  const double nees = normalized_square(x, P);
-  if (!std::isfinite(nees)) {
-    score_.finite = false;
-    return;
-  }
-
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
-  const Eigen::Vector3d error_n_m = C_ne * x.segment<3>(kDr);
-  const Eigen::Matrix3d P_n_m2 = C_ne * P.block<3, 3>(kDr, kDr) * C_ne.transpose();
-  const Eigen::Vector2d error_ne_m = error_n_m.head<2>();
-  const Eigen::Matrix2d P_ne_m2 = P_n_m2.topLeftCorner<2, 2>();
-  ++score_.epochs;
-  score_.error_sq_n_m2 += error_n_m.cwiseAbs2();
-  score_.variance_n_m2 += P_n_m2.diagonal();
-  score_.nees += nees;
-  if (error_ne_m.norm() > horizontal_radius_m(P_ne_m2, 0.95)) ++score_.beyond_r95;
-  const double distance_sq = error_ne_m.dot(P_ne_m2.inverse() * error_ne_m);
-  if (distance_sq > kDivergedSigmas * kDivergedSigmas) score_.diverged = true;
-  score_.largest_horizontal_m = std::max(score_.largest_horizontal_m, error_ne_m.norm());
+  score_epoch(score_, truth, filter.estimate(), &P);
 }
 
 }  // namespace

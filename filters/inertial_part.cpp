@@ -1,0 +1,41 @@
+#include "leeway/filters/inertial_part.hpp"
+
+#include "cholesky.hpp"
+#include "leeway/filters/gnss_measurement.hpp"
+
+namespace leeway {
+
+InertialPart::InertialPart(const EkfConfig& config, const Estimate& estimate)
+    : noise_(
+          Ekf(config, estimate, ErrorMatrix::Identity()).noise()),  // which refuses what is wrong
+      strapdown_step_(strapdown_function(config.strapdown)),
+      lever_arm_b_m_(config.lever_arm_b_m),
+      estimate_(estimate) {}
+
+StrapdownStep InertialPart::advance(const ImuIncrement& inc) {
+  ImuIncrement corrected = inc;
+  corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
+  corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
+  omega_ib_b_radps_ = 1.0 / inc.dt_s * inc.dtheta_b_rad;
+  const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
+  estimate_.bias.b_a_mps2 *= bias_decay(inc.dt_s, noise_.tau_a_s);
+  estimate_.bias.b_g_radps *= bias_decay(inc.dt_s, noise_.tau_g_s);
+  return step;
+}
+
+Measurement InertialPart::measurement(const GnssFix& fix) const {
+  return gnss_measurement(fix, estimate_, lever_arm_b_m_, omega_ib_b_radps_);
+}
+
+WhiteMeasurement InertialPart::white_measurement(const GnssFix& fix, double position_weight) const {
+  const Measurement m = measurement(fix);
+  const Cholesky<6> R_factor(m.R);
+  WhiteMeasurement white{R_factor.whitened(m.H), R_factor.whitened(m.innovation)};
+  if (fix.position) {
+    white.H.topRows<3>() *= position_weight;
+    white.z.head<3>() *= position_weight;
+  }
+  return white;
+}
+
+}  // namespace leeway

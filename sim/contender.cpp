@@ -1,0 +1,100 @@
+#include "contender.hpp"
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <utility>
+
+#include "leeway/filters/dense_kernel.hpp"
+#include "leeway/filters/kernel_ekf.hpp"
+#include "leeway/filters/reset_filter.hpp"
+#include "leeway/filters/square_root_kernel.hpp"
+#include "leeway/filters/symmetric_kernel.hpp"
+#include "leeway/filters/ud_kernel.hpp"
+
+namespace leeway::sim {
+namespace {
+
+template <class Filter>
+void observe(const Filter& filter, const Estimate& truth, const Contender::Observer& observer) {
+  if constexpr (requires { filter.covariance(); }) {
+    const ErrorMatrix P = filter.covariance();
+    observer(truth, filter.estimate(), &P);
+  } else {
+    observer(truth, filter.estimate(), nullptr);
+  }
+}
+
+template <class Filter>
+class Runner final : public Contender {
+ public:
+  explicit Runner(Filter filter) : filter_(std::move(filter)) {}
+
+  void replay(const RecordedTrial& trial, const Observer& observer) override {
+    auto next = trial.fixes.begin();
+    for (std::size_t k = 0; k < trial.imu.size(); ++k) {
+      filter_.predict(trial.imu[k]);
+      if (next == trial.fixes.end() || k != next->at) continue;
+      if (observer && next->truth) observe(filter_, *next->truth, observer);
+      filter_.update(next->fix);
+      ++next;
+    }
+  }
+
+ private:
+  Filter filter_;
+};
+
+template <class Filter>
+std::unique_ptr<Contender> running(Filter filter) {
+  return std::make_unique<Runner<Filter>>(std::move(filter));
+}
+
+using Factory = std::unique_ptr<Contender> (*)(const EkfConfig&, UpdateForm, const TrialStart&);
+
+template <class Kernel>
+std::unique_ptr<Contender> make_ekf(const EkfConfig& config, UpdateForm form,
+                                    const TrialStart& start) {
+  if constexpr (std::constructible_from<Kernel, const ErrorMatrix&, UpdateForm>) {
+    return running(KernelEkf(config, start.estimate, Kernel(start.P, form)));
+  } else {
+    return running(KernelEkf(config, start.estimate, Kernel(start.P)));
+  }
+}
+
+struct Entry {
+  KernelForm kernel;
+  Precision precision;
+  Factory make;
+};
+
+constexpr std::array kEkfs{
+    Entry{KernelForm::kDense, Precision::kFloat, make_ekf<DenseKernel<float>>},
+    Entry{KernelForm::kDense, Precision::kDouble, make_ekf<DenseKernel<double>>},
+    Entry{KernelForm::kDense, Precision::kLongDouble, make_ekf<DenseKernel<long double>>},
+    Entry{KernelForm::kSymmetric, Precision::kFloat, make_ekf<SymmetricKernel<float>>},
+    Entry{KernelForm::kSymmetric, Precision::kDouble, make_ekf<SymmetricKernel<double>>},
+    Entry{KernelForm::kSymmetric, Precision::kLongDouble, make_ekf<SymmetricKernel<long double>>},
+    Entry{KernelForm::kUd, Precision::kFloat, make_ekf<UdKernel<float>>},
+    Entry{KernelForm::kUd, Precision::kDouble, make_ekf<UdKernel<double>>},
+    Entry{KernelForm::kUd, Precision::kLongDouble, make_ekf<UdKernel<long double>>},
+    Entry{KernelForm::kSquareRoot, Precision::kFloat, make_ekf<SquareRootKernel<float>>},
+    Entry{KernelForm::kSquareRoot, Precision::kDouble, make_ekf<SquareRootKernel<double>>},
+    Entry{KernelForm::kSquareRoot, Precision::kLongDouble,
+          make_ekf<SquareRootKernel<long double>>}};
+
+}  // namespace
+
+std::unique_ptr<Contender> make_contender(const Variant& variant, const EkfConfig& believed,
+                                          const TrialStart& start) {
+  EkfConfig config = believed;
+  config.strapdown = variant.strapdown;
+  config.covariance_interval_s = variant.covariance_interval_s;
+  if (variant.estimator == Estimator::kReset) return running(ResetFilter(config, start.estimate));
+  const auto* entry = std::find_if(kEkfs.begin(), kEkfs.end(), [&variant](const Entry& e) {
+    return e.kernel == variant.kernel && e.precision == variant.precision;
+  });
+  return entry->make(config, variant.update, start);
+}
+
+}  // namespace leeway::sim

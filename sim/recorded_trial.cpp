@@ -1,0 +1,60 @@
+#include "recorded_trial.hpp"
+
+#include <algorithm>
+
+#include "leeway/sim/imu_simulator.hpp"
+#include "leeway/sim/random.hpp"
+#include "leeway/sim/receiver.hpp"
+
+namespace leeway::sim {
+
+RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed) {
+  const Scene& scene = plan.scene();
+  ImuErrorSimulator sensor(scene.imu, Random(seed, 0, kImuStream));
+  Receiver receiver(scene.trajectory, scene.gnss, seed);
+  RecordedTrial trial;
+  trial.start = trial_start(plan, seed);
+  trial.imu.reserve(plan.increments().size());
+  trial.fixes.reserve(plan.fixes().size());
+  auto next = plan.fixes().begin();
+  for (std::size_t k = 0; k < plan.increments().size(); ++k) {
+    trial.imu.push_back(sensor.measure(plan.increments()[k]));
+    if (next == plan.fixes().end() || k != next->at) continue;
+    const double t_s = to_seconds(trial.imu.back().time);
+    RecordedTrial::Fix fix{k, receiver.fix_at(t_s), {}};
+    if (next->scored) {
+      fix.truth.emplace();
+      fix.truth->nav = truth_at(scene.trajectory, t_s).nav;
+      fix.truth->bias = {sensor.accelerometer_bias_mps2(), sensor.gyro_bias_radps()};
+    }
+    trial.fixes.push_back(fix);
+    ++next;
+  }
+  return trial;
+}
+
+bool fits(const TrialPlan& plan, int divider) {
+  const auto n = static_cast<std::size_t>(divider);
+  return std::all_of(plan.fixes().begin(), plan.fixes().end(),
+                     [n](const TrialPlan::Fix& fix) { return (fix.at + 1) % n == 0; });
+}
+
+RecordedTrial at_lower_rate(const RecordedTrial& trial, int divider) {
+  const auto n = static_cast<std::size_t>(divider);
+  RecordedTrial slower{trial.start, {}, trial.fixes};
+  slower.imu.reserve(trial.imu.size() / n);
+  for (std::size_t first = 0; first + n <= trial.imu.size(); first += n) {
+    ImuIncrement sum = trial.imu[first];
+    for (std::size_t k = first + 1; k < first + n; ++k) {
+      sum.time = trial.imu[k].time;
+      sum.dt_s += trial.imu[k].dt_s;
+      sum.dtheta_b_rad += trial.imu[k].dtheta_b_rad;
+      sum.dv_b_mps += trial.imu[k].dv_b_mps;
+    }
+    slower.imu.push_back(sum);
+  }
+  for (RecordedTrial::Fix& fix : slower.fixes) fix.at = (fix.at + 1) / n - 1;
+  return slower;
+}
+
+}  // namespace leeway::sim

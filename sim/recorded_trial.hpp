@@ -1,0 +1,40 @@
+/// @file
+/// The inputs of one trial, made before any filter runs: so that filters see the very same, and
+/// that what is timed is the filter alone.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "leeway/gnss_fix.hpp"
+#include "leeway/imu.hpp"
+#include "leeway/sim/trial.hpp"
+#include "trial_parts.hpp"
+
+namespace leeway::sim {
+
+struct RecordedTrial {
+  struct Fix {
+    std::size_t at{};  ///< used at the end of this increment
+    GnssFix fix{};
+    std::optional<Estimate> truth{};  ///< of a fix that is scored
+  };
+
+  TrialStart start{};
+  std::vector<ImuIncrement> imu{};
+  std::vector<Fix> fixes{};
+};
+
+/// What run_trial() of this seed feeds its filter. @pre the plan's fixes come without latency.
+RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed);
+
+/// Whether every fix is used at the end of an increment at a rate lower by this divider.
+bool fits(const TrialPlan& plan, int divider);
+
+/// The same sensor read less often: so many increments added to one, errors and all. Nothing is
+/// lost but the knowledge of what happened within. @pre fits()
+RecordedTrial at_lower_rate(const RecordedTrial& trial, int divider);
+
+}  // namespace leeway::sim

@@ -1,0 +1,135 @@
+#include "leeway/filters/kernel_ekf.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "filters/random_state.hpp"
+#include "filters/recording.hpp"
+#include "leeway/error.hpp"
+#include "leeway/filters/dense_kernel.hpp"
+#include "leeway/filters/square_root_kernel.hpp"
+#include "leeway/filters/symmetric_kernel.hpp"
+#include "leeway/filters/ud_kernel.hpp"
+#include "leeway/sim/trajectories.hpp"
+
+namespace leeway {
+namespace {
+
+using test::scaled_distance;
+
+constexpr double kDriveS = 60.0;
+
+EkfConfig plain_config(double covariance_interval_s) {
+  EkfConfig config;
+  config.gnss_correlation_s = 0.0;
+  config.gate_probability = 0.0;
+  config.covariance_interval_s = covariance_interval_s;
+  config.lever_arm_b_m = {0.5, -0.3, -1.2};
+  return config;
+}
+
+/// Largest differences of a filter from Ekf on the same drive, looked at before and after every
+/// fix and on the way.
+struct Difference {
+  double sigmas{0.0};      // of the estimate, in claimed sigmas
+  double covariance{0.0};  // of sqrt(P_ii P_jj)
+};
+
+template <class Kernel>
+Difference difference_from_ekf(const EkfConfig& config, std::uint64_t seed) {
+  static const sim::Trajectory trajectory = sim::car_drive({.duration_s = kDriveS});
+  static const auto truth = sim::true_increments(trajectory, 50.0, kDriveS);
+  sim::GnssErrorModel gnss;
+  gnss.lever_arm_b_m = config.lever_arm_b_m;
+  const auto log = test::record(trajectory, truth, config.imu, gnss, 1.0, 1.0, seed);
+  const Estimate at_start = test::truth_estimate(trajectory, 0.0);
+  const ErrorMatrix P = initial_covariance(at_start, {0.01, 0.02, 0.1, 2.5}, config.imu);
+  const Estimate start = test::drawn_start(at_start, P, seed);
+  Ekf reference(config, start, P);
+  KernelEkf filter(config, start, Kernel(P));
+  Difference worst;
+  const auto look = [&] {
+    const ErrorMatrix expected = reference.covariance();
+    const ErrorVector x = difference(reference.estimate(), filter.estimate());
+    const ErrorVector sigma = expected.diagonal().cwiseSqrt();
+    worst.sigmas = std::max(worst.sigmas, x.cwiseQuotient(sigma).cwiseAbs().maxCoeff());
+    worst.covariance = std::max(worst.covariance, scaled_distance(filter.covariance(), expected));
+  };
+  auto fix = log.fixes.begin();
+  for (std::size_t k = 0; k < log.imu.size(); ++k) {
+    reference.predict(log.imu[k]);
+    filter.predict(log.imu[k]);
+    if (k % 10 == 3) look();
+    if (fix == log.fixes.end() || fix->time > log.imu[k].time) continue;
+    look();
+    reference.update(*fix);
+    filter.update(*fix);
+    ++fix;
+    look();
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("on the default kernel it is Ekf, seeds 1 to 3") {
+  for (const double interval_s : {0.0, 0.1, 1.0}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      CAPTURE(interval_s);
+      CAPTURE(seed);
+      const auto worst =
+          difference_from_ekf<SymmetricKernel<double>>(plain_config(interval_s), seed);
+      MESSAGE("estimate " << worst.sigmas << " sigma, covariance " << worst.covariance);
+      // Rounding, and the reset, which here is within Phi: it turns half of Q, too, which is alike
+      // in all directions, so what is left is the square of the correction, 1e-4, times Q over P.
+      CHECK(worst.sigmas < 1e-6);
+      CHECK(worst.covariance < 1e-7);
+    }
+  }
+}
+
+TEST_CASE("and weighs correlated fixes as Ekf does") {
+  EkfConfig config = plain_config(0.1);
+  config.gnss_correlation_s = 30.0;
+  CHECK(difference_from_ekf<SymmetricKernel<double>>(config, 1).covariance < 1e-7);
+}
+
+TEST_CASE_TEMPLATE("every other kernel in double, too", Kernel, DenseKernel<double>,
+                   UdKernel<double>, SquareRootKernel<double>) {
+  for (const double interval_s : {0.0, 0.1}) {
+    CAPTURE(interval_s);
+    const auto worst = difference_from_ekf<Kernel>(plain_config(interval_s), 1);
+    CHECK(worst.sigmas < 1e-6);
+    CHECK(worst.covariance < 1e-7);
+  }
+}
+
+TEST_CASE_TEMPLATE("in float within a hundredth of a sigma", Kernel, SymmetricKernel<float>,
+                   UdKernel<float>, SquareRootKernel<float>) {
+  const auto worst = difference_from_ekf<Kernel>(plain_config(0.1), 1);
+  MESSAGE("estimate " << worst.sigmas << " sigma, covariance " << worst.covariance);
+  CHECK(worst.sigmas < 1e-2);
+  CHECK(worst.covariance < 1e-2);
+}
+
+TEST_CASE("a fix without numbers changes nothing") {
+  const Estimate at = test::at_equator();
+  const EkfConfig config = plain_config(0.1);
+  const ErrorMatrix P = initial_covariance(at, {0.01, 0.02, 0.1, 2.5}, config.imu);
+  KernelEkf filter(config, at, SymmetricKernel<double>(P));
+  filter.update(GnssFix{});
+  CHECK(filter.covariance() == P);
+  CHECK(filter.estimate().nav.r_e_m == at.nav.r_e_m);
+}
+
+TEST_CASE("an invalid configuration is refused by the field's name") {
+  EkfConfig config = plain_config(-1.0);
+  const auto make = [&config] {
+    KernelEkf(config, test::at_equator(), SymmetricKernel<double>(ErrorMatrix::Identity()));
+  };
+  CHECK_THROWS_WITH_AS(make(), doctest::Contains("covariance_interval_s"), Error);
+}
+
+}  // namespace leeway
