@@ -44,14 +44,14 @@ class Recordings {
 };
 
 /// One variant in one trial.
-struct Run {
+struct ContenderRun {
   TrialScore score{};
   std::vector<double> horizontal_m{};
 };
 
-Run scored_run(const Variant& variant, const EkfConfig& believed, const RecordedTrial& trial,
-               std::uint64_t seed) {
-  Run run;
+ContenderRun scored_run(const Variant& variant, const EkfConfig& believed,
+                        const RecordedTrial& trial, std::uint64_t seed) {
+  ContenderRun run;
   run.score.seed = seed;
   const auto score = [&run](const Estimate& truth, const Estimate& estimate, const ErrorMatrix* P) {
     if (!run.score.finite) return;
@@ -73,10 +73,10 @@ double r95_of(std::vector<double> values) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-Accuracy summary(const Variant& variant, const std::vector<Run>& runs) {
+Accuracy summary(const Variant& variant, const std::vector<ContenderRun>& runs) {
   CampaignSums sums;
   std::vector<double> horizontal_m;
-  for (const Run& run : runs) {
+  for (const ContenderRun& run : runs) {
     sums.add(run.score);
     if (!run.score.finite) continue;
     horizontal_m.insert(horizontal_m.end(), run.horizontal_m.begin(), run.horizontal_m.end());
@@ -87,7 +87,7 @@ Accuracy summary(const Variant& variant, const std::vector<Run>& runs) {
 std::vector<Accuracy> accuracy_in(const TrialPlan& plan, const std::vector<Variant>& variants,
                                   int threads, const std::function<void(double)>& progress) {
   const auto trials = static_cast<std::size_t>(plan.scene().trials);
-  std::vector<std::vector<Run>> runs(variants.size(), std::vector<Run>(trials));
+  std::vector<std::vector<ContenderRun>> runs(variants.size(), std::vector<ContenderRun>(trials));
   parallel_for(
       trials,
       [&](std::size_t k) {

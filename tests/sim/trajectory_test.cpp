@@ -8,6 +8,7 @@
 #include "leeway/error.hpp"
 #include "leeway/rotation.hpp"
 #include "leeway/sim/trajectories.hpp"
+#include "sim/central_difference.hpp"
 #include "sim/reference_table.hpp"
 #include "support/near.hpp"
 
@@ -24,21 +25,6 @@ std::vector<Trajectory> all_trajectories() {
           car_drive({.duration_s = 600.0}),
           circle20(),
           manoeuvre_car()};
-}
-
-/// Whether a stencil of +-0.02 s around t crosses a break.
-bool is_smooth_at(const Trajectory& trajectory, double t_s) {
-  for (const double break_s : trajectory.breaks_s) {
-    if (std::abs(t_s - break_s) < 0.03) return false;
-  }
-  return true;
-}
-
-/// Fourth-order central difference.
-template <class Function>
-Eigen::Vector3d rate_of(const Function& f, double t_s, double h_s) {
-  return (8.0 * (f(t_s + h_s) - f(t_s - h_s)) - (f(t_s + 2.0 * h_s) - f(t_s - 2.0 * h_s))) /
-         (12.0 * h_s);
 }
 
 Eigen::Vector3d omega_eb_b(const TruthPoint& truth) {

@@ -13,6 +13,7 @@
 #include "leeway/rotation.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/strapdown.hpp"
+#include "sim/central_difference.hpp"
 #include "support/near.hpp"
 #include "support/temp_dir.hpp"
 
@@ -78,17 +79,6 @@ Geodetic position(const Trajectory& trajectory, double t_s) {
 
 NavStateNed ned(const Trajectory& trajectory, double t_s) {
   return ned_from_nav_state(truth_at(trajectory, t_s).nav);
-}
-
-bool is_smooth_at(const Trajectory& trajectory, double t_s) {
-  return std::none_of(trajectory.breaks_s.begin(), trajectory.breaks_s.end(),
-                      [t_s](double break_s) { return std::abs(t_s - break_s) < 0.05; });
-}
-
-template <class Function>
-Eigen::Vector3d rate_of(const Function& f, double t_s, double h_s) {
-  return (8.0 * (f(t_s + h_s) - f(t_s - h_s)) - (f(t_s + 2.0 * h_s) - f(t_s - 2.0 * h_s))) /
-         (12.0 * h_s);
 }
 
 std::string refusal(const WaypointParameters& p) {
