@@ -28,15 +28,7 @@ Matrix<Scalar> triple_product(const Matrix<Scalar>& a, const Matrix<Scalar>& b) 
 
 template <class Scalar>
 void DenseKernel<Scalar>::propagate(const Transition& Phi, const ProcessNoise& noise) {
-  CovarianceVector<Scalar> half_q;
-  const auto set = [&](int first, double density) {
-    half_q.template segment<3>(first).setConstant(static_cast<Scalar>(0.5 * Phi.dt_s * density));
-  };
-  set(kPsi, noise.attitude_rad2_per_s);
-  set(kDv, noise.velocity_m2_per_s3);
-  set(kDr, 0.0);
-  set(kBa, noise.b_a_m2_per_s5);
-  set(kBg, noise.b_g_rad2_per_s3);
+  const CovarianceVector<Scalar> half_q = noise_variance(noise, 0.5 * Phi.dt_s).cast<Scalar>();
   P_.diagonal() += half_q;
   P_ = triple_product<Scalar>(dense(Phi).template cast<Scalar>(), P_);
   P_.diagonal() += half_q;

@@ -136,17 +136,11 @@ template <class Scalar>
 lanes::Diagonal<Scalar> diagonal_of(const ProcessNoise& noise, double dt_s, double a_a,
                                     double g_g) {
   lanes::Diagonal<Scalar> diagonal;
-  const auto set = [&](int first, double density, double decay) {
-    for (int i = first; i < first + 3; ++i) {
-      diagonal.noise[i] = static_cast<Scalar>(0.5 * dt_s * density);
-      diagonal.decay[i] = static_cast<Scalar>(decay);
-    }
-  };
-  set(kPsi, noise.attitude_rad2_per_s, 1.0);
-  set(kDv, noise.velocity_m2_per_s3, 1.0);
-  set(kDr, 0.0, 1.0);
-  set(kBa, noise.b_a_m2_per_s5, a_a);
-  set(kBg, noise.b_g_rad2_per_s3, g_g);
+  const ErrorVector half_q = noise_variance(noise, 0.5 * dt_s);
+  for (int i = 0; i < kErrorStates; ++i) {
+    diagonal.noise[i] = static_cast<Scalar>(half_q(i));
+    diagonal.decay[i] = static_cast<Scalar>(i < kBa ? 1.0 : i < kBg ? a_a : g_g);
+  }
   diagonal.noise[kErrorStates] = 0;
   diagonal.decay[kErrorStates] = 0;
   return diagonal;

@@ -4,9 +4,6 @@
 /// Triangularizing W gives the new factor.
 #pragma once
 
-#include <array>
-#include <cstddef>
-
 #include "lanes.hpp"
 #include "leeway/filters/covariance.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
@@ -79,16 +76,13 @@ WeightedColumns<Scalar> weighted_columns(const Transition& Phi, const ProcessNoi
     for (int i = 0; i < kErrorStates; ++i) result.W[i][column] = values(i);
     result.weight[column] = weight;
   };
-  constexpr std::array kFirst{kPsi, kDv, kBa, kBg};
-  const std::array density{noise.attitude_rad2_per_s, noise.velocity_m2_per_s3, noise.b_a_m2_per_s5,
-                           noise.b_g_rad2_per_s3};
+  const ErrorVector half_q = noise_variance(noise, 0.5 * Phi.dt_s);
   int column = 0;
-  for (std::size_t group = 0; group < kFirst.size(); ++group) {
-    const auto half_q = static_cast<Scalar>(0.5 * Phi.dt_s * density[group]);
-    for (int i = kFirst[group]; i < kFirst[group] + 3; ++i) {
+  for (const int first : {kPsi, kDv, kBa, kBg}) {
+    for (int i = first; i < first + 3; ++i) {
       const CovarianceVector<Scalar> unit = CovarianceVector<Scalar>::Unit(i);
-      set(column++, transported<Scalar>(Phi, unit), half_q);
-      set(column++, unit, half_q);
+      set(column++, transported<Scalar>(Phi, unit), static_cast<Scalar>(half_q(i)));
+      set(column++, unit, static_cast<Scalar>(half_q(i)));
     }
   }
   for (int j = 0; j < kErrorStates; ++j) {

@@ -71,17 +71,12 @@ struct Entry {
 constexpr std::array kEkfs{
     Entry{KernelForm::kDense, Precision::kFloat, make_ekf<DenseKernel<float>>},
     Entry{KernelForm::kDense, Precision::kDouble, make_ekf<DenseKernel<double>>},
-    Entry{KernelForm::kDense, Precision::kLongDouble, make_ekf<DenseKernel<long double>>},
     Entry{KernelForm::kSymmetric, Precision::kFloat, make_ekf<SymmetricKernel<float>>},
     Entry{KernelForm::kSymmetric, Precision::kDouble, make_ekf<SymmetricKernel<double>>},
-    Entry{KernelForm::kSymmetric, Precision::kLongDouble, make_ekf<SymmetricKernel<long double>>},
     Entry{KernelForm::kUd, Precision::kFloat, make_ekf<UdKernel<float>>},
     Entry{KernelForm::kUd, Precision::kDouble, make_ekf<UdKernel<double>>},
-    Entry{KernelForm::kUd, Precision::kLongDouble, make_ekf<UdKernel<long double>>},
     Entry{KernelForm::kSquareRoot, Precision::kFloat, make_ekf<SquareRootKernel<float>>},
-    Entry{KernelForm::kSquareRoot, Precision::kDouble, make_ekf<SquareRootKernel<double>>},
-    Entry{KernelForm::kSquareRoot, Precision::kLongDouble,
-          make_ekf<SquareRootKernel<long double>>}};
+    Entry{KernelForm::kSquareRoot, Precision::kDouble, make_ekf<SquareRootKernel<double>>}};
 
 }  // namespace
 

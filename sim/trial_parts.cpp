@@ -76,12 +76,12 @@ void score_epoch(TrialScore& score, const Estimate& truth, const Estimate& estim
     score.finite = false;
     return;
   }
-  const Eigen::Vector3d error_n_m = position_error_n_m(truth, estimate);
+  const Eigen::Matrix3d C_ne = ned_axes_at(truth);
+  const Eigen::Vector3d error_n_m = C_ne * x.segment<3>(kDr);
   ++score.epochs;
   score.error_sq_n_m2 += error_n_m.cwiseAbs2();
   score.largest_horizontal_m = std::max(score.largest_horizontal_m, error_n_m.head<2>().norm());
   if (P == nullptr) return;
-  const Eigen::Matrix3d C_ne = ned_axes_at(truth);
   score.nees += nees;
   score_position_claim(score, error_n_m, C_ne * P->block<3, 3>(kDr, kDr) * C_ne.transpose());
 }

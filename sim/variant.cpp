@@ -44,7 +44,7 @@ std::string_view word(KernelForm kernel) {
 }
 
 std::string_view word(Precision precision) {
-  constexpr std::array<std::string_view, 3> kWords{"float", "double", "long-double"};
+  constexpr std::array<std::string_view, kPrecisions.size()> kWords{"float", "double"};
   return kWords[static_cast<std::size_t>(precision)];
 }
 

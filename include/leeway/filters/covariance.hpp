@@ -23,6 +23,9 @@ struct ProcessNoise {
   double tau_g_s{std::numeric_limits<double>::infinity()};
 };
 
+/// Variance that the noise adds to each error over a time.
+ErrorVector noise_variance(const ProcessNoise& noise, double dt_s);
+
 /// What the model means to the filter. An in-run bias without a turn-on part is a Gauss-Markov
 /// state. With one it is a random walk of the same drive: a decaying state would pull the constant
 /// part, which does not decay, towards zero.

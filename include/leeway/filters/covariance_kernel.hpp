@@ -28,8 +28,8 @@ enum class UpdateForm {
   kBatch,   ///< all rows at once, by the Cholesky factor of the innovation's covariance
 };
 
-/// What a kernel computes in.
-enum class Precision { kFloat, kDouble, kLongDouble };
+/// What a kernel computes in, for programs that choose: long double is for references.
+enum class Precision { kFloat, kDouble };
 
 template <class Scalar>
 using CovarianceMatrix = Eigen::Matrix<Scalar, kErrorStates, kErrorStates>;
