@@ -45,7 +45,6 @@ sim::Comparison compared(const CompareCommand& options) {
 
 int run(const CompareCommand& options) {
   const sim::Comparison comparison = compared(options);
-  if (!options.csv.empty()) write_file(options.csv, comparison_csv(comparison));
   if (options.json) {
     Json input = scene_json(comparison.scene);
     input.erase("gate_probability");  // there is no gate
@@ -54,6 +53,8 @@ int run(const CompareCommand& options) {
   } else {
     print_comparison(comparison, options.compare.repeat);
   }
+  // Last: a file that cannot be written must not cost the minutes that the rest took.
+  if (!options.csv.empty()) write_file(options.csv, comparison_csv(comparison));
   const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
                                [](const sim::Compared& c) { return c.on_front; });
   return any ? kSuccess : kNoAnswer;
