@@ -5,6 +5,8 @@
 #include <cstddef>
 
 #include "leeway/rotation.hpp"
+#include "small_turn.hpp"
+#include "triple.hpp"
 
 namespace leeway {
 namespace {
@@ -14,24 +16,41 @@ Eigen::Vector3d earth_turn_rate_e() {
   return rotation == EarthRotation::kOn ? earth_rotation_e_radps() : Eigen::Vector3d::Zero();
 }
 
+/// An increment in registers.
+struct Increment {
+  double dt_s;
+  Triple dtheta_b;
+  Triple dv_b;
+};
+
+Increment increment(const ImuIncrement& inc) {
+  return {inc.dt_s, triple(inc.dtheta_b_rad), triple(inc.dv_b_mps)};
+}
+
 /// What two increments tell beyond one: coning and sculling in the body axes of the newer one's
 /// start, with rates linear through both, of whatever lengths. For equal lengths the factor is the
 /// classical 1/12. Savage (1998), part 1 (47), part 2 (36).
 struct PairTerms {
-  Eigen::Vector3d coning_b_rad{Eigen::Vector3d::Zero()};
-  Eigen::Vector3d sculling_b_mps{Eigen::Vector3d::Zero()};
+  Triple coning_b_rad{};
+  Triple sculling_b_mps{};
 };
 
-PairTerms pair_terms(const ImuIncrement& inc, const ImuIncrement& last) {
+PairTerms pair_terms(const Increment& inc, const Increment& last) {
   const double factor = inc.dt_s * inc.dt_s / (6.0 * last.dt_s * (last.dt_s + inc.dt_s));
-  return {factor * last.dtheta_b_rad.cross(inc.dtheta_b_rad),
-          factor * (last.dtheta_b_rad.cross(inc.dv_b_mps) + last.dv_b_mps.cross(inc.dtheta_b_rad))};
+  return {factor * cross(last.dtheta_b, inc.dtheta_b),
+          factor * (cross(last.dtheta_b, inc.dv_b) + cross(last.dv_b, inc.dtheta_b))};
 }
 
-/// Position change beyond the trapezoid when the acceleration is linear through two increments.
-Eigen::Vector3d curvature_e_m(const Eigen::Vector3d& dv_e_mps, double dt_s,
-                              const Eigen::Vector3d& last_dv_e_mps, double last_dt_s) {
-  return -dt_s * dt_s / (6.0 * (dt_s + last_dt_s)) * (dv_e_mps - dt_s / last_dt_s * last_dv_e_mps);
+/// Position change beyond the trapezoid when the acceleration is linear through two increments:
+/// own_s times this one's velocity change, and what the last one's makes.
+struct Curvature {
+  double own_s{0.0};
+  Triple last_e_m{};
+};
+
+Curvature curvature(double dt_s, const Triple& last_dv_e_mps, double last_dt_s) {
+  const double own_s = -dt_s * dt_s / (6.0 * (dt_s + last_dt_s));
+  return {own_s, -own_s * dt_s / last_dt_s * last_dv_e_mps};
 }
 
 /// [seed (3)-(8)]; the semi-implicit variant takes the position from the new velocity.
@@ -72,57 +91,111 @@ StrapdownStep trapezoid_step(NavState& state, const ImuIncrement& inc) {
   return {C_mean, dv_f_e};
 }
 
-/// Exact for a rate and force constant within the increment, plus the terms of a pair.
-template <GravityModel gravity, EarthRotation rotation>
-StrapdownStep increment_step(NavState& state, const ImuIncrement& inc, const PairTerms& terms) {
-  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
-  const Eigen::Vector3d phi_b = inc.dtheta_b_rad + terms.coning_b_rad;
-  const Eigen::Vector3d dv_b =
-      left_jacobian_times(inc.dtheta_b_rad, inc.dv_b_mps) + terms.sculling_b_mps;
+/// The integral of the force over the increment, in the body axes of its start.
+Triple force_integral(const Increment& inc) {
+  if (squared_norm(inc.dtheta_b) < kSmallTurnSq) {
+    return small_left_jacobian_times(inc.dtheta_b, inc.dv_b);
+  }
+  return triple(left_jacobian_times(vector(inc.dtheta_b), vector(inc.dv_b)));
+}
 
-  const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
-  Eigen::Vector3d dv_f_e = C_eb * dv_b;
-  dv_f_e -= 0.5 * inc.dt_s * omega_ie_e.cross(dv_f_e);  // the frame turns under the force
-  const Eigen::Vector3d dv_e = velocity_change<gravity, rotation>(state, dv_f_e, inc.dt_s);
-  state.r_e_m += inc.dt_s * (state.v_e_mps + 0.5 * dv_e);
-  state.v_e_mps += dv_e;
-  state.q_eb = turned(-inc.dt_s * omega_ie_e, state.q_eb, phi_b);
-  return {C_eb + 0.5 * C_eb * skew(phi_b), dv_f_e};
+/// The Earth's turn on the left, the body's on the right.
+void turn(Eigen::Quaterniond& q_eb, const Quadruple& q, double earth_rad, const Triple& phi_b_rad) {
+  if (squared_norm(phi_b_rad) < kSmallTurnSq && earth_rad * earth_rad < kSmallTurnSq) {
+    assign(q_eb, turned(-earth_rad, q, phi_b_rad));
+  } else {
+    q_eb = turned(Eigen::Vector3d(0.0, 0.0, -earth_rad), q_eb, vector(phi_b_rad));
+  }
+}
+
+/// omega x v for omega = (0, 0, rate).
+Triple turn_about_z(double rate, const Triple& v) { return {-rate * v.y, rate * v.x, 0.0}; }
+
+/// What a step of the increment schemes did.
+struct IncrementMotion {
+  Columns C_eb;       // at the start
+  Triple phi_b_rad;   // turn of the body
+  Triple dv_f_e_mps;  // integral of the force
+  Triple dv_e_mps;    // change of the velocity
+};
+
+StrapdownStep report(const IncrementMotion& motion) {
+  const auto& [C, phi, dv_f_e, dv_e] = motion;
+  StrapdownStep step;
+  // C + C skew(phi) / 2, by columns.
+  const Triple half = 0.5 * phi;
+  const Triple x = C.x + (half.z * C.y - half.y * C.z);
+  const Triple y = C.y + (half.x * C.z - half.z * C.x);
+  const Triple z = C.z + (half.y * C.x - half.x * C.y);
+  step.C_eb_mean << x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z;
+  assign(step.dv_f_e_mps, dv_f_e);
+  return step;
+}
+
+/// Exact for a rate and force constant within the increment, plus the terms of a pair. Second order
+/// in what is not the body's.
+template <GravityModel gravity, EarthRotation rotation>
+IncrementMotion increment_motion(NavState& state, const Increment& inc, const PairTerms& terms,
+                                 const Curvature& curve) {
+  constexpr double kOmega = rotation == EarthRotation::kOn ? wgs84::kRotationRateRadps : 0.0;
+  const double dt = inc.dt_s;
+  const Quadruple q = quadruple(state.q_eb);
+  const Triple v = triple(state.v_e_mps);
+  const Triple r = triple(state.r_e_m);
+  IncrementMotion motion;
+  motion.C_eb = rotation_matrix(q);
+  motion.phi_b_rad = inc.dtheta_b + terms.coning_b_rad;
+  const Triple dv_at_start = motion.C_eb * (force_integral(inc) + terms.sculling_b_mps);
+  // The frame turns under the force.
+  const Triple dv_f = dv_at_start - turn_about_z(0.5 * dt * kOmega, dv_at_start);
+  motion.dv_f_e_mps = dv_f;
+
+  const Triple g_dt = dt * triple(gravity_e<gravity>(vector(r + 0.5 * dt * v)));
+  const Triple v_mid = v + 0.5 * (dv_f + g_dt - turn_about_z(2.0 * dt * kOmega, v));
+  const Triple dv = (dv_f + g_dt) - turn_about_z(2.0 * dt * kOmega, v_mid);
+  motion.dv_e_mps = dv;
+  assign(state.r_e_m, r + (dt * v + (0.5 * dt + curve.own_s) * dv + curve.last_e_m));
+  assign(state.v_e_mps, v + dv);
+  turn(state.q_eb, q, dt * kOmega, motion.phi_b_rad);
+  return motion;
 }
 
 /// Each step looks back, so that every output is good; the second step of a pair also replaces what
 /// the first took from the past by what the pair itself shows. That makes the pair symmetric in
 /// time, and the scheme one order better than looking back alone.
 template <GravityModel gravity, EarthRotation rotation>
-StrapdownStep two_sample_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
-  const ImuIncrement last = history.recent[0];
+StrapdownStep two_sample_step(NavState& state, const ImuIncrement& newest, ImuHistory& history) {
+  const Increment inc = increment(newest);
+  const Increment last = increment(history.recent[0]);
   const bool look_back = history.count > 0;
   const bool settle = history.pair_open;
-  const double length_ratio = settle ? last.dt_s / inc.dt_s : 0.0;
-  const double share = length_ratio * length_ratio * length_ratio;
   const PairTerms own = look_back ? pair_terms(inc, last) : PairTerms{};
   PairTerms applied = own;
   if (settle) {
     // Owed to the first step, carried over the turn since.
-    const Eigen::Vector3d coning = share * own.coning_b_rad - history.coning_b_rad;
-    const Eigen::Vector3d sculling = share * own.sculling_b_mps - history.sculling_b_mps;
-    applied.coning_b_rad += coning - 0.5 * (last.dtheta_b_rad + inc.dtheta_b_rad).cross(coning);
-    applied.sculling_b_mps += sculling - last.dtheta_b_rad.cross(sculling);
+    const double length_ratio = last.dt_s / inc.dt_s;
+    const double share = length_ratio * length_ratio * length_ratio;
+    const Triple coning = share * own.coning_b_rad - triple(history.coning_b_rad);
+    const Triple sculling = share * own.sculling_b_mps - triple(history.sculling_b_mps);
+    const Triple half_turn = 0.5 * (last.dtheta_b + inc.dtheta_b);
+    applied.coning_b_rad = own.coning_b_rad + (coning - cross(half_turn, coning));
+    applied.sculling_b_mps = own.sculling_b_mps + (sculling - cross(last.dtheta_b, sculling));
   }
-  const Eigen::Vector3d v_old_e = state.v_e_mps;
-  const StrapdownStep step = increment_step<gravity, rotation>(state, inc, applied);
+  // The curvature needs no settling: over equal steps it telescopes to the change of acceleration.
+  const Curvature curve =
+      look_back ? curvature(inc.dt_s, triple(history.dv_e_mps), last.dt_s) : Curvature{};
+  const IncrementMotion motion = increment_motion<gravity, rotation>(state, inc, applied, curve);
 
-  const Eigen::Vector3d dv_e = state.v_e_mps - v_old_e;
-  // Needs no settling: over equal steps these telescope to the change of the acceleration.
-  if (look_back) state.r_e_m += curvature_e_m(dv_e, inc.dt_s, history.dv_e_mps, last.dt_s);
-
-  history.recent[0] = inc;
+  history.recent[0].time = newest.time;
+  history.recent[0].dt_s = inc.dt_s;
+  assign(history.recent[0].dtheta_b_rad, inc.dtheta_b);
+  assign(history.recent[0].dv_b_mps, inc.dv_b);
   history.count = 1;
   history.pair_open = !settle;
-  history.coning_b_rad = own.coning_b_rad;
-  history.sculling_b_mps = own.sculling_b_mps;
-  history.dv_e_mps = dv_e;
-  return step;
+  assign(history.coning_b_rad, own.coning_b_rad);
+  assign(history.sculling_b_mps, own.sculling_b_mps);
+  assign(history.dv_e_mps, motion.dv_e_mps);
+  return report(motion);
 }
 
 /// Body rates at the start, middle and end of an increment.
@@ -260,7 +333,7 @@ StrapdownStep strapdown_step(NavState& state, const ImuIncrement& inc, ImuHistor
   } else if constexpr (scheme == Scheme::kTrapezoid) {
     step = trapezoid_step<gravity, rotation>(state, inc);
   } else if constexpr (scheme == Scheme::kOneSample) {
-    step = increment_step<gravity, rotation>(state, inc, PairTerms{});
+    step = report(increment_motion<gravity, rotation>(state, increment(inc), {}, {}));
   } else if constexpr (scheme == Scheme::kTwoSample) {
     step = two_sample_step<gravity, rotation>(state, inc, history);
   } else {
