@@ -48,6 +48,17 @@ class Cholesky {
     return B;
   }
 
+  /// The first columns of B, as many as A has rows, become those of B L^-T.
+  template <class Matrix>
+  void whiten_columns(Matrix&& B) const {
+    for (int i = 0; i < rows_; ++i) {
+      for (int k = 0; k < i; ++k) {
+        if (at(i, k) != 0.0) B.col(i) -= at(i, k) * B.col(k);
+      }
+      B.col(i) *= 1.0 / at(i, i);
+    }
+  }
+
   /// v^T A^-1 v.
   template <class Vector>
   double normalized_square(const Vector& v) const {

@@ -10,6 +10,7 @@
 #include "leeway/error.hpp"
 #include "leeway/filters/chi_square.hpp"
 #include "leeway/filters/gnss_measurement.hpp"
+#include "measurement_update.hpp"
 
 namespace leeway {
 namespace {
@@ -75,10 +76,6 @@ HeldDirections directions_of(Held held, const Estimate& estimate) {
 /// one of the full update and s d d^T, s the innovation's variance and d the gain left out.
 template <class Matrix, class Vector>
 void held_scalar_update(Matrix& P, Vector& x, const Vector& h, double z, const HeldDirections& U) {
-  if (U.isZero(0.0)) {
-    scalar_update(P, x, h, z);
-    return;
-  }
   const Vector Ph = P * h;
   const double s = h.dot(Ph) + 1.0;
   Vector left_out = Vector::Zero();
@@ -88,6 +85,54 @@ void held_scalar_update(Matrix& P, Vector& x, const Vector& h, double z, const H
   scalar_update(P, x, h, z);
   x -= innovation * left_out;
   P += s * left_out * left_out.transpose();
+}
+
+/// A measurement of unit variances, as columns of N states.
+template <int N>
+struct WhiteMeasurement {
+  int rows;
+  RowColumns<double, N> H;
+  RowValues<double> z;
+};
+
+/// Whitened by the Cholesky factor of R, the components are independent, of unit variance.
+template <int N>
+WhiteMeasurement<N> whitened(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights) {
+  WhiteMeasurement<N> white{m.rows(), RowColumns<double, N>::Zero(), RowValues<double>::Zero()};
+  const Cholesky<6> R_factor(m.R);
+  for (int i = 0; i < white.rows; ++i) {
+    for (int k = 0; k < kErrorStates; ++k) white.H(k, i) = m.H(i, k);
+    for (int k = kErrorStates; k < N; ++k) white.H(k, i) = m.H_vehicle(i, k - kErrorStates);
+    white.z(i) = m.innovation(i);
+  }
+  R_factor.whiten_columns(white.H);
+  R_factor.whiten_columns(white.z.transpose());
+  for (int i = 0; i < white.rows; ++i) {
+    white.H.col(i) *= weights(i);
+    white.z(i) *= weights(i);
+  }
+  return white;
+}
+
+/// Takes the measurement into P. @returns the correction of the estimate.
+template <int N>
+Eigen::Matrix<double, N, 1> take(Eigen::Matrix<double, N, N>& P, const WhiteMeasurement<N>& m,
+                                 const HeldDirections& U) {
+  Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
+  const bool nothing_held = U.isZero(0.0);
+  if (nothing_held &&
+      update_at_once<double, N>(P, x, m.rows, m.H, m.z, kJosephShrinkage)) {
+    return x;
+  }
+  for (int i = 0; i < m.rows; ++i) {
+    const Eigen::Matrix<double, N, 1> h = m.H.col(i);
+    if (nothing_held) {
+      scalar_update(P, x, h, m.z(i));
+    } else {
+      held_scalar_update(P, x, h, m.z(i), U);
+    }
+  }
+  return x;
 }
 
 double nis_of(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& S) {
@@ -206,34 +251,18 @@ UpdateReport Ekf::judge(const Measurement& m) {
 
 void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights, Held held) {
   const HeldDirections U = directions_of(held, estimate_);
-  // Whitened by the Cholesky factor of R, the components are independent, of unit variance.
-  const Cholesky<6> R_factor(m.R);
-  const auto white_H = R_factor.whitened(m.H);
-  const auto white_z = R_factor.whitened(m.innovation);
-  ErrorVector x_hat = ErrorVector::Zero();
+  ErrorVector x_hat;
   if (estimates_vehicle_) {
-    const auto white_H_vehicle = R_factor.whitened(m.H_vehicle);
     JointMatrix P;
     P << P_, vehicle_.cross, vehicle_.cross.transpose(), vehicle_.P;
-    JointVector x_joint = JointVector::Zero();
-    for (int i = 0; i < m.rows(); ++i) {
-      JointVector h;
-      h << white_H.row(i).transpose(), white_H_vehicle.row(i).transpose();
-      h *= weights(i);
-      const double z = weights(i) * white_z(i);
-      held_scalar_update(P, x_joint, h, z, U);
-    }
+    const JointVector x_joint = take(P, whitened<kJointStates>(m, weights), U);
     P_ = P.topLeftCorner<kErrorStates, kErrorStates>();
     vehicle_.cross = P.topRightCorner<kErrorStates, kVehicleStates>();
     vehicle_.P = P.bottomRightCorner<kVehicleStates, kVehicleStates>();
     vehicle_.value += x_joint.tail<kVehicleStates>();
     x_hat = x_joint.head<kErrorStates>();
   } else {
-    for (int i = 0; i < m.rows(); ++i) {
-      const ErrorVector h = weights(i) * white_H.row(i).transpose();
-      const double z = weights(i) * white_z(i);
-      held_scalar_update(P_, x_hat, h, z, U);
-    }
+    x_hat = take(P_, whitened<kErrorStates>(m, weights), U);
   }
   inject(estimate_, x_hat);
   const Eigen::Matrix3d J = reset_jacobian(x_hat);

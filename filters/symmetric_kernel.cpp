@@ -1,12 +1,12 @@
 #include "leeway/filters/symmetric_kernel.hpp"
 
 #include <Eigen/Core>
+#include <limits>
 
-#include "batch_gain.hpp"
 #include "lanes.hpp"
 #include "leeway/earth.hpp"
+#include "measurement_update.hpp"
 #include "symmetric_propagation.hpp"
-#include "symmetric_update.hpp"
 
 namespace leeway {
 namespace {
@@ -188,27 +188,34 @@ double SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const ErrorVector& h,
 template <class Scalar>
 void SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
                                      const MeasurementValues& z) {
-  if (form_ == UpdateForm::kBatch) {
-    update_batch(x_hat, H, z);
-  } else {
+  if (form_ == UpdateForm::kSimple || !update_at_once(x_hat, H, z)) {
     update_in_sequence(*this, x_hat, H, z);
   }
 }
 
 template <class Scalar>
-void SymmetricKernel<Scalar>::update_batch(ErrorVector& x_hat, const MeasurementRows& H,
-                                           const MeasurementValues& z) {
-  const BatchFactor<Scalar, kPaddedStates> V = batch_gain<Scalar, kPaddedStates>(P_, x_hat, H, z);
+bool SymmetricKernel<Scalar>::update_at_once(ErrorVector& x_hat, const MeasurementRows& H,
+                                             const MeasurementValues& z) {
   const int rows = static_cast<int>(H.rows());
-  lanes::change_symmetric<Scalar, kPaddedStates>(
-      P_, [&](int j, int b, const VectorOf<Scalar>& old) {
-        VectorOf<Scalar> fresh = old;
-        for (int i = 0; i < rows; ++i) {
-          const Scalar* column = V.data() + kPaddedStates * i;
-          fresh -= column[j] * lanes::load(column + lanes::start_of<Scalar, kPaddedStates>(b));
-        }
-        return fresh;
-      });
+  RowColumns<Scalar, kPaddedStates> columns = RowColumns<Scalar, kPaddedStates>::Zero();
+  RowValues<Scalar> innovation = RowValues<Scalar>::Zero();
+  for (int i = 0; i < rows; ++i) {
+    double predicted = 0.0;
+    for (int k = 0; k < kErrorStates; ++k) {
+      columns(k, i) = static_cast<Scalar>(H(i, k));
+      predicted += H(i, k) * x_hat(k);
+    }
+    innovation(i) = static_cast<Scalar>(z(i) - predicted);
+  }
+  PaddedVector<Scalar> x;
+  const double shrinkage =
+      form_ == UpdateForm::kBatch ? std::numeric_limits<double>::infinity() : kJosephShrinkage;
+  if (!leeway::update_at_once<Scalar, kPaddedStates>(P_, x, rows, columns, innovation,
+                                                     static_cast<Scalar>(shrinkage))) {
+    return false;
+  }
+  x_hat += x.template head<kErrorStates>().template cast<double>();
+  return true;
 }
 
 template class SymmetricKernel<float>;

@@ -66,7 +66,7 @@ class SymmetricKernel {
   void update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
 
  private:
-  void update_batch(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+  bool update_at_once(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
 
   PaddedMatrix<Scalar> P_;
   UpdateForm form_;

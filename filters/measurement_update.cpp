@@ -1,0 +1,166 @@
+#include "measurement_update.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lanes.hpp"
+#include "leeway/filters/symmetric_kernel.hpp"
+#include "leeway/filters/vehicle_state.hpp"
+#include "symmetric_update.hpp"
+
+namespace leeway {
+namespace {
+
+using lanes::Blocks;
+using lanes::each_block;
+using lanes::load;
+using lanes::start_of;
+using lanes::store;
+using lanes::unrolled;
+using lanes::VectorOf;
+
+/// P h. Columns are taken by threes, as most of H comes; threes of zeros are skipped.
+template <class Scalar, int N>
+[[gnu::always_inline]] inline Blocks<Scalar, N> product(const Eigen::Matrix<Scalar, N, N>& P,
+                                                        const Scalar* h) {
+  Blocks<Scalar, N> u;
+  each_block<Scalar, N>([&](int b, int) { u[b] = VectorOf<Scalar>{}; });
+  unrolled<(N + 2) / 3>([&](auto triad) __attribute__((always_inline)) {
+    constexpr int kFirst = 3 * triad;
+    constexpr int kCount = std::min(3, N - kFirst);
+    Scalar size = 0;
+    unrolled<kCount>([&](auto k) __attribute__((always_inline)) { size += std::abs(h[kFirst + k]); });
+    if (size == 0) return;
+    unrolled<kCount>([&](auto k) __attribute__((always_inline)) {
+      const Scalar* column = P.data() + N * (kFirst + k);
+      each_block<Scalar, N>([&](int b, int row) { u[b] += h[kFirst + k] * load(column + row); });
+    });
+  });
+  return u;
+}
+
+/// h . u. The last block repeats lanes of the one before it where blocks do not divide N.
+template <class Scalar, int N>
+[[gnu::always_inline]] inline Scalar dot(const Scalar* h, const Scalar* u) {
+  constexpr int kLast = lanes::kBlocks<Scalar, N> - 1;
+  constexpr int kRepeated = (kLast + 1) * lanes::kCount<Scalar> - N;
+  VectorOf<Scalar> sum = load(h) * load(u);
+  unrolled<kLast>([&](auto block) __attribute__((always_inline)) {
+    constexpr int kStart = start_of<Scalar, N>(block + 1);
+    VectorOf<Scalar> h_b = load(h + kStart);
+    if constexpr (block + 1 == kLast && kRepeated > 0) {
+      h_b = lanes::first_of<Scalar>(kRepeated, VectorOf<Scalar>{}, h_b);
+    }
+    sum += h_b * load(u + kStart);
+  });
+  return lanes::total<Scalar>(sum);
+}
+
+/// A measurement of at most `rows` rows.
+template <class Scalar, int N, int rows>
+class WholeMeasurement {
+ public:
+  using Matrix = Eigen::Matrix<Scalar, N, N>;
+
+  /// U = P H^T and the lower half of S = H P H^T + 1.
+  WholeMeasurement(const Matrix& P, const RowColumns<Scalar, N>& H) {
+    for (int i = 0; i < rows; ++i) {
+      const Blocks<Scalar, N> u = product<Scalar, N>(P, H.data() + N * i);
+      each_block<Scalar, N>([&](int b, int row) { store<Scalar>(u_of(i) + row, u[b]); });
+    }
+    unrolled<rows>([&](auto j) __attribute__((always_inline)) {
+      unrolled<rows - j>([&](auto n) __attribute__((always_inline)) {
+        S_[j + n][j] = dot<Scalar, N>(H.data() + N * (j + n), u_of(j));
+      });
+      S_[j][j] += 1;
+    });
+  }
+
+  Scalar shrinkage() const {
+    Scalar sum = 1 - rows;
+    unrolled<rows>([&](auto i) { sum += S_[i][i]; });
+    return sum;
+  }
+
+  /// Makes each row independent of those before it, in S, in U and in what was measured.
+  void decorrelate(RowValues<Scalar> y) {
+    lanes::Array<lanes::Array<Scalar, rows>, rows> L;
+    unrolled<rows>([&](auto j) __attribute__((always_inline)) {
+      inverse_[j] = 1 / S_[j][j];
+      unrolled<rows - 1 - j>([&](auto n) __attribute__((always_inline)) {
+        constexpr int i = j + 1 + n;
+        L[i][j] = S_[i][j] * inverse_[j];
+        y(int{i}) -= L[i][j] * y(int{j});
+        unrolled<n + 1>([&](auto k) { S_[i][j + 1 + k] -= L[i][j] * S_[j + 1 + k][j]; });
+      });
+    });
+    each_block<Scalar, N>([&](int, int row) __attribute__((always_inline)) {
+      lanes::Array<VectorOf<Scalar>, rows> u;
+      VectorOf<Scalar> x{};
+      unrolled<rows>([&](auto i) __attribute__((always_inline)) {
+        u[i] = load(u_of(i) + row);
+        unrolled<i>([&](auto j) { u[i] -= L[i][j] * u[j]; });
+        store<Scalar>(u_of(i) + row, u[i]);
+        const VectorOf<Scalar> gain = inverse_[i] * u[i];
+        store<Scalar>(gain_.data() + N * i + row, gain);
+        x += y(int{i}) * gain;
+      });
+      store<Scalar>(x_.data() + row, x);
+    });
+  }
+
+  const Eigen::Matrix<Scalar, N, 1>& correction() const { return x_; }
+
+  void subtract_from(Matrix& P) const {
+    lanes::change_symmetric<Scalar, N>(
+        P, [&](int j, int b, VectorOf<Scalar> lanes_of_P) __attribute__((always_inline)) {
+          unrolled<rows>([&](auto i) {
+            lanes_of_P -= gain_(j, int{i}) * load(U_.data() + N * i + start_of<Scalar, N>(b));
+          });
+          return lanes_of_P;
+        });
+  }
+
+ private:
+  Scalar* u_of(int i) { return U_.data() + N * i; }
+
+  Eigen::Matrix<Scalar, N, rows> U_;
+  Eigen::Matrix<Scalar, N, rows> gain_;  // U D^-1
+  Eigen::Matrix<Scalar, N, 1> x_;
+  lanes::Array<lanes::Array<Scalar, rows>, rows> S_;
+  lanes::Array<Scalar, rows> inverse_;
+};
+
+template <int rows, class Scalar, int N>
+bool take(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
+          const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation, Scalar shrinkage) {
+  WholeMeasurement<Scalar, N, rows> measurement(P, H);
+  if (!(measurement.shrinkage() <= shrinkage)) return false;
+  measurement.decorrelate(innovation);
+  measurement.subtract_from(P);
+  x = measurement.correction();
+  return true;
+}
+
+}  // namespace
+
+template <class Scalar, int N>
+bool update_at_once(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x, int rows,
+                    const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation,
+                    Scalar shrinkage) {
+  return rows <= 3 ? take<3>(P, x, H, innovation, shrinkage)
+                   : take<kMaxRows>(P, x, H, innovation, shrinkage);
+}
+
+#define LEEWAY_INSTANTIATE(Scalar, N)                                                       \
+  template bool update_at_once<Scalar, N>(                                                  \
+      Eigen::Matrix<Scalar, N, N>&, Eigen::Matrix<Scalar, N, 1>&, int,                      \
+      const RowColumns<Scalar, N>&, const RowValues<Scalar>&, Scalar)
+LEEWAY_INSTANTIATE(float, kPaddedStates);
+LEEWAY_INSTANTIATE(double, kPaddedStates);
+LEEWAY_INSTANTIATE(long double, kPaddedStates);
+LEEWAY_INSTANTIATE(double, kErrorStates);
+LEEWAY_INSTANTIATE(double, kJointStates);
+#undef LEEWAY_INSTANTIATE
+
+}  // namespace leeway
