@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "leeway/filters/symmetric_kernel.hpp"
+#include "measurement_update.hpp"
 
 namespace leeway {
 namespace {
@@ -20,9 +21,10 @@ MotionRows motion_rows(const Transition& Phi) {
 template <int N>
 double scalar_update_of(Eigen::Matrix<double, N, N>& P, Eigen::Matrix<double, N, 1>& x_hat,
                         const Eigen::Matrix<double, N, 1>& h, double z) {
-  const ScalarGain<double, N> gain = update_symmetric<double, N>(P, h, UpdateForm::kJoseph);
-  x_hat += gain.K * (z - h.dot(x_hat));
-  return gain.variance;
+  Eigen::Matrix<double, N, 1> K;
+  const double variance = update_by_row<double, N>(P, K, h, UpdateForm::kJoseph);
+  x_hat += K * (z - h.dot(x_hat));
+  return variance;
 }
 
 struct BiasDrive {

@@ -89,7 +89,7 @@ void held_scalar_update(Matrix& P, Vector& x, const Vector& h, double z, const H
 
 /// A measurement of unit variances, as columns of N states.
 template <int N>
-struct WhiteMeasurement {
+struct WhiteColumns {
   int rows;
   RowColumns<double, N> H;
   RowValues<double> z;
@@ -97,8 +97,8 @@ struct WhiteMeasurement {
 
 /// Whitened by the Cholesky factor of R, the components are independent, of unit variance.
 template <int N>
-WhiteMeasurement<N> whitened(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights) {
-  WhiteMeasurement<N> white{m.rows(), RowColumns<double, N>::Zero(), RowValues<double>::Zero()};
+WhiteColumns<N> whitened(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights) {
+  WhiteColumns<N> white{m.rows(), RowColumns<double, N>::Zero(), RowValues<double>::Zero()};
   const Cholesky<6> R_factor(m.R);
   for (int i = 0; i < white.rows; ++i) {
     for (int k = 0; k < kErrorStates; ++k) white.H(k, i) = m.H(i, k);
@@ -116,12 +116,11 @@ WhiteMeasurement<N> whitened(const Measurement& m, const Eigen::Matrix<double, 6
 
 /// Takes the measurement into P. @returns the correction of the estimate.
 template <int N>
-Eigen::Matrix<double, N, 1> take(Eigen::Matrix<double, N, N>& P, const WhiteMeasurement<N>& m,
-                                 const HeldDirections& U) {
+Eigen::Matrix<double, N, 1> correction_by(Eigen::Matrix<double, N, N>& P, const WhiteColumns<N>& m,
+                                          const HeldDirections& U) {
   Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
   const bool nothing_held = U.isZero(0.0);
-  if (nothing_held &&
-      update_at_once<double, N>(P, x, m.rows, m.H, m.z, kJosephShrinkage)) {
+  if (nothing_held && update_at_once<double, N>(P, x, m.rows, m.H, m.z, kJosephShrinkage)) {
     return x;
   }
   for (int i = 0; i < m.rows; ++i) {
@@ -255,14 +254,14 @@ void Ekf::fuse(const Measurement& m, const Eigen::Matrix<double, 6, 1>& weights,
   if (estimates_vehicle_) {
     JointMatrix P;
     P << P_, vehicle_.cross, vehicle_.cross.transpose(), vehicle_.P;
-    const JointVector x_joint = take(P, whitened<kJointStates>(m, weights), U);
+    const JointVector x_joint = correction_by(P, whitened<kJointStates>(m, weights), U);
     P_ = P.topLeftCorner<kErrorStates, kErrorStates>();
     vehicle_.cross = P.topRightCorner<kErrorStates, kVehicleStates>();
     vehicle_.P = P.bottomRightCorner<kVehicleStates, kVehicleStates>();
     vehicle_.value += x_joint.tail<kVehicleStates>();
     x_hat = x_joint.head<kErrorStates>();
   } else {
-    x_hat = take(P_, whitened<kErrorStates>(m, weights), U);
+    x_hat = correction_by(P_, whitened<kErrorStates>(m, weights), U);
   }
   inject(estimate_, x_hat);
   const Eigen::Matrix3d J = reset_jacobian(x_hat);

@@ -6,7 +6,6 @@
 #include "lanes.hpp"
 #include "leeway/filters/symmetric_kernel.hpp"
 #include "leeway/filters/vehicle_state.hpp"
-#include "symmetric_update.hpp"
 
 namespace leeway {
 namespace {
@@ -19,6 +18,49 @@ using lanes::store;
 using lanes::unrolled;
 using lanes::VectorOf;
 
+/// Replaces the lower half of P by what `changed` makes of it, and the upper half by its mirror,
+/// block by block in registers.
+/// @param changed  from a column, a block of rows and their present lanes, the lanes to be
+template <class Scalar, int N, class F>
+[[gnu::always_inline]] inline void change_symmetric(Eigen::Matrix<Scalar, N, N>& P,
+                                                    const F& changed) {
+  using lanes::first_of;
+  using lanes::kCount;
+  using lanes::Square;
+  constexpr int kLast = lanes::kBlocks<Scalar, N> - 1;
+  // How many lanes of the last block the one before it has dealt with.
+  constexpr int kDone = (kLast + 1) * kCount<Scalar> - N;
+  unrolled<(kLast + 1) * (kLast + 1)>([&](auto n) __attribute__((always_inline)) {
+    constexpr int kRows = n % (kLast + 1);
+    constexpr int kColumns = n / (kLast + 1);
+    if constexpr (kRows >= kColumns) {
+      constexpr int kRow = start_of<Scalar, N>(kRows);
+      constexpr int kColumn = start_of<Scalar, N>(kColumns);
+      constexpr int kRowsDone = kRows == kLast ? kDone : 0;
+      Scalar* const lower = P.data() + N * kColumn + kRow;
+      Square<Scalar> old;
+      Square<Scalar> fresh;
+      unrolled<kCount<Scalar>>([&](auto j) __attribute__((always_inline)) {
+        old[j] = load(lower + N * j);
+        fresh[j] = changed(kColumn + j, kRows, old[j]);
+      });
+      Square<Scalar> mirror = fresh;
+      lanes::transpose<Scalar>(mirror);
+      unrolled<kCount<Scalar>>([&](auto j) __attribute__((always_inline)) {
+        if constexpr (kRows == kColumns) fresh[j] = first_of<Scalar>(j, mirror[j], fresh[j]);
+        if constexpr (kRowsDone > 0) fresh[j] = first_of<Scalar>(kRowsDone, old[j], fresh[j]);
+        if constexpr (kColumns < kLast || j >= kDone) store<Scalar>(lower + N * j, fresh[j]);
+      });
+      if constexpr (kRows > kColumns) {
+        Scalar* const upper = P.data() + N * kRow + kColumn;
+        unrolled<kCount<Scalar>>([&](auto j) __attribute__((always_inline)) {
+          if constexpr (j >= kRowsDone) store<Scalar>(upper + N * j, mirror[j]);
+        });
+      }
+    }
+  });
+}
+
 /// P h. Columns are taken by threes, as most of H comes; threes of zeros are skipped.
 template <class Scalar, int N>
 [[gnu::always_inline]] inline Blocks<Scalar, N> product(const Eigen::Matrix<Scalar, N, N>& P,
@@ -29,7 +71,8 @@ template <class Scalar, int N>
     constexpr int kFirst = 3 * triad;
     constexpr int kCount = std::min(3, N - kFirst);
     Scalar size = 0;
-    unrolled<kCount>([&](auto k) __attribute__((always_inline)) { size += std::abs(h[kFirst + k]); });
+    unrolled<kCount>([&](auto k)
+                         __attribute__((always_inline)) { size += std::abs(h[kFirst + k]); });
     if (size == 0) return;
     unrolled<kCount>([&](auto k) __attribute__((always_inline)) {
       const Scalar* column = P.data() + N * (kFirst + k);
@@ -78,7 +121,7 @@ class WholeMeasurement {
 
   Scalar shrinkage() const {
     Scalar sum = 1 - rows;
-    unrolled<rows>([&](auto i) { sum += S_[i][i]; });
+    unrolled<rows>([&](auto i) __attribute__((always_inline)) { sum += S_[i][i]; });
     return sum;
   }
 
@@ -91,7 +134,9 @@ class WholeMeasurement {
         constexpr int i = j + 1 + n;
         L[i][j] = S_[i][j] * inverse_[j];
         y(int{i}) -= L[i][j] * y(int{j});
-        unrolled<n + 1>([&](auto k) { S_[i][j + 1 + k] -= L[i][j] * S_[j + 1 + k][j]; });
+        unrolled<n + 1>([&](auto k) __attribute__((always_inline)) {
+          S_[i][j + 1 + k] -= L[i][j] * S_[j + 1 + k][j];
+        });
       });
     });
     each_block<Scalar, N>([&](int, int row) __attribute__((always_inline)) {
@@ -99,7 +144,7 @@ class WholeMeasurement {
       VectorOf<Scalar> x{};
       unrolled<rows>([&](auto i) __attribute__((always_inline)) {
         u[i] = load(u_of(i) + row);
-        unrolled<i>([&](auto j) { u[i] -= L[i][j] * u[j]; });
+        unrolled<i>([&](auto j) __attribute__((always_inline)) { u[i] -= L[i][j] * u[j]; });
         store<Scalar>(u_of(i) + row, u[i]);
         const VectorOf<Scalar> gain = inverse_[i] * u[i];
         store<Scalar>(gain_.data() + N * i + row, gain);
@@ -112,9 +157,9 @@ class WholeMeasurement {
   const Eigen::Matrix<Scalar, N, 1>& correction() const { return x_; }
 
   void subtract_from(Matrix& P) const {
-    lanes::change_symmetric<Scalar, N>(
+    change_symmetric<Scalar, N>(
         P, [&](int j, int b, VectorOf<Scalar> lanes_of_P) __attribute__((always_inline)) {
-          unrolled<rows>([&](auto i) {
+          unrolled<rows>([&](auto i) __attribute__((always_inline)) {
             lanes_of_P -= gain_(j, int{i}) * load(U_.data() + N * i + start_of<Scalar, N>(b));
           });
           return lanes_of_P;
@@ -132,8 +177,9 @@ class WholeMeasurement {
 };
 
 template <int rows, class Scalar, int N>
-bool take(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
-          const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation, Scalar shrinkage) {
+bool update_rows(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
+                 const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation,
+                 Scalar shrinkage) {
   WholeMeasurement<Scalar, N, rows> measurement(P, H);
   if (!(measurement.shrinkage() <= shrinkage)) return false;
   measurement.decorrelate(innovation);
@@ -148,14 +194,41 @@ template <class Scalar, int N>
 bool update_at_once(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x, int rows,
                     const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation,
                     Scalar shrinkage) {
-  return rows <= 3 ? take<3>(P, x, H, innovation, shrinkage)
-                   : take<kMaxRows>(P, x, H, innovation, shrinkage);
+  return rows <= 3 ? update_rows<3>(P, x, H, innovation, shrinkage)
+                   : update_rows<kMaxRows>(P, x, H, innovation, shrinkage);
 }
 
-#define LEEWAY_INSTANTIATE(Scalar, N)                                                       \
-  template bool update_at_once<Scalar, N>(                                                  \
-      Eigen::Matrix<Scalar, N, N>&, Eigen::Matrix<Scalar, N, 1>&, int,                      \
-      const RowColumns<Scalar, N>&, const RowValues<Scalar>&, Scalar)
+template <class Scalar, int N>
+Scalar update_by_row(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& K,
+                     const Eigen::Matrix<Scalar, N, 1>& h, UpdateForm form) {
+  const Eigen::Matrix<Scalar, N, 1> Ph = P.lazyProduct(h);
+  const Scalar variance = h.dot(Ph) + 1;
+  // P h / s = K = c d with d = c P h: d d^T is symmetric to the bit, K (P h)^T is not.
+  const Scalar c = 1 / std::sqrt(variance);
+  const Eigen::Matrix<Scalar, N, 1> d = c * Ph;
+  K = c * d;
+  for (int j = 0; j < N; ++j) P.col(j) -= d(j) * d;
+  if (form != UpdateForm::kJoseph) return variance;
+
+  // What rounding made of A = P - d d^T shows in A h, which should be K. Taken out along K on both
+  // sides, as Joseph's form does with every error of P:
+  // A - r K^T - K r^T + (h r) K K^T, r = A h - K.
+  const Eigen::Matrix<Scalar, N, 1> r = P.lazyProduct(h) - K;
+  const Eigen::Matrix<Scalar, N, 1> q = r - h.dot(r) / 2 * K;
+  for (int j = 0; j < N; ++j) {
+    for (int i = j; i < N; ++i) P(i, j) -= q(i) * K(j) + K(i) * q(j);
+    for (int i = j + 1; i < N; ++i) P(j, i) = P(i, j);
+  }
+  return variance;
+}
+
+#define LEEWAY_INSTANTIATE(Scalar, N)                                    \
+  template bool update_at_once<Scalar, N>(                               \
+      Eigen::Matrix<Scalar, N, N>&, Eigen::Matrix<Scalar, N, 1>&, int,   \
+      const RowColumns<Scalar, N>&, const RowValues<Scalar>&, Scalar);   \
+  template Scalar update_by_row<Scalar, N>(Eigen::Matrix<Scalar, N, N>&, \
+                                           Eigen::Matrix<Scalar, N, 1>&, \
+                                           const Eigen::Matrix<Scalar, N, 1>&, UpdateForm)
 LEEWAY_INSTANTIATE(float, kPaddedStates);
 LEEWAY_INSTANTIATE(double, kPaddedStates);
 LEEWAY_INSTANTIATE(long double, kPaddedStates);

@@ -179,23 +179,23 @@ double SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const ErrorVector& h,
   PaddedVector<Scalar> row;
   row.template head<kErrorStates>() = h.cast<Scalar>();
   row(kErrorStates) = 0;
-  const ScalarGain<Scalar, kPaddedStates> gain =
-      update_symmetric<Scalar, kPaddedStates>(P_, row, form_);
-  x_hat += (z - h.dot(x_hat)) * gain.K.template head<kErrorStates>().template cast<double>();
-  return static_cast<double>(gain.variance);
+  PaddedVector<Scalar> K;
+  const Scalar variance = update_by_row<Scalar, kPaddedStates>(P_, K, row, form_);
+  x_hat += (z - h.dot(x_hat)) * K.template head<kErrorStates>().template cast<double>();
+  return static_cast<double>(variance);
 }
 
 template <class Scalar>
 void SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
                                      const MeasurementValues& z) {
-  if (form_ == UpdateForm::kSimple || !update_at_once(x_hat, H, z)) {
+  if (form_ == UpdateForm::kSimple || !take_at_once(x_hat, H, z)) {
     update_in_sequence(*this, x_hat, H, z);
   }
 }
 
 template <class Scalar>
-bool SymmetricKernel<Scalar>::update_at_once(ErrorVector& x_hat, const MeasurementRows& H,
-                                             const MeasurementValues& z) {
+bool SymmetricKernel<Scalar>::take_at_once(ErrorVector& x_hat, const MeasurementRows& H,
+                                           const MeasurementValues& z) {
   const int rows = static_cast<int>(H.rows());
   RowColumns<Scalar, kPaddedStates> columns = RowColumns<Scalar, kPaddedStates>::Zero();
   RowValues<Scalar> innovation = RowValues<Scalar>::Zero();
@@ -210,8 +210,8 @@ bool SymmetricKernel<Scalar>::update_at_once(ErrorVector& x_hat, const Measureme
   PaddedVector<Scalar> x;
   const double shrinkage =
       form_ == UpdateForm::kBatch ? std::numeric_limits<double>::infinity() : kJosephShrinkage;
-  if (!leeway::update_at_once<Scalar, kPaddedStates>(P_, x, rows, columns, innovation,
-                                                     static_cast<Scalar>(shrinkage))) {
+  if (!update_at_once<Scalar, kPaddedStates>(P_, x, rows, columns, innovation,
+                                             static_cast<Scalar>(shrinkage))) {
     return false;
   }
   x_hat += x.template head<kErrorStates>().template cast<double>();

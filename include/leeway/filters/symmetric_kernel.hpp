@@ -32,19 +32,6 @@ template <class Scalar, int N>
 void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& step,
                          const ProcessNoise& noise);
 
-/// What a scalar measurement of unit variance tells: the gain, and the innovation's variance.
-template <class Scalar, int N>
-struct ScalarGain {
-  Eigen::Matrix<Scalar, N, 1> K;
-  Scalar variance;
-};
-
-/// Takes h into P, exactly symmetric before and after. Skips the zeros of h.
-/// @param form  kSimple or kJoseph
-template <class Scalar, int N>
-ScalarGain<Scalar, N> update_symmetric(Eigen::Matrix<Scalar, N, N>& P,
-                                       const Eigen::Matrix<Scalar, N, 1>& h, UpdateForm form);
-
 template <class Scalar>
 class SymmetricKernel {
  public:
@@ -61,12 +48,11 @@ class SymmetricKernel {
   void propagate(const Transition& Phi, const ProcessNoise& noise);
   void propagate(const ErrorDynamics& step, const ProcessNoise& noise);
 
-  /// With UpdateForm::kBatch a single row is taken by the simple form, which is the same.
   double update(ErrorVector& x_hat, const ErrorVector& h, double z);
   void update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
 
  private:
-  bool update_at_once(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+  bool take_at_once(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
 
   PaddedMatrix<Scalar> P_;
   UpdateForm form_;
