@@ -42,15 +42,6 @@ BiasDrive bias_drive(const TriadErrorModel& triad) {
 
 }  // namespace
 
-ErrorVector noise_variance(const ProcessNoise& noise, double dt_s) {
-  ErrorVector variance = ErrorVector::Zero();
-  variance.segment<3>(kPsi).setConstant(dt_s * noise.attitude_rad2_per_s);
-  variance.segment<3>(kDv).setConstant(dt_s * noise.velocity_m2_per_s3);
-  variance.segment<3>(kBa).setConstant(dt_s * noise.b_a_m2_per_s5);
-  variance.segment<3>(kBg).setConstant(dt_s * noise.b_g_rad2_per_s3);
-  return variance;
-}
-
 ProcessNoise process_noise(const ImuErrorModel& model) {
   validate(model);
   const BiasDrive a = bias_drive(model.accelerometer);

@@ -32,7 +32,7 @@ class BlockRows {
   using Column = lanes::Column<Scalar>;
   explicit BlockRows(const Transition& Phi) : Phi_(Phi) {}
 
-  void attitude(const Column& in, Column& out) const {
+  [[gnu::always_inline]] void attitude(const Column& in, Column& out) const {
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
       VectorOf<Scalar> sum{};
       add_product<kPsi, Scalar>(Phi_.psi_psi, i, in, sum);
@@ -41,11 +41,11 @@ class BlockRows {
     });
   }
 
-  void velocity(const Column& in, Column& out) const {
+  [[gnu::always_inline]] void velocity(const Column& in, Column& out) const {
     motion<kDv>(Phi_.v_psi, Phi_.v_v, Phi_.v_r, Phi_.v_a, Phi_.v_g, in, out);
   }
 
-  void position(const Column& in, Column& out) const {
+  [[gnu::always_inline]] void position(const Column& in, Column& out) const {
     motion<kDr>(Phi_.r_psi, Phi_.r_v, Phi_.r_r, Phi_.r_a, Phi_.r_g, in, out);
   }
 
@@ -53,8 +53,9 @@ class BlockRows {
   using Block = Eigen::Matrix3d;
 
   template <int row>
-  static void motion(const Block& psi, const Block& v, const Block& r, const Block& a,
-                     const Block& g, const Column& in, Column& out) {
+  [[gnu::always_inline]] static void motion(const Block& psi, const Block& v, const Block& r,
+                                            const Block& a, const Block& g, const Column& in,
+                                            Column& out) {
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
       VectorOf<Scalar> sum{};
       add_product<kPsi, Scalar>(psi, i, in, sum);
@@ -83,7 +84,7 @@ class StepRows {
         by_g_((-0.5 * (1.0 + g_g) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
         by_r_((step.dt_s * step.gravity_gradient_e).cast<Scalar>()) {}
 
-  void attitude(const Column& in, Column& out) const {
+  [[gnu::always_inline]] void attitude(const Column& in, Column& out) const {
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
       out[kPsi + i] = in[kPsi + i];
       add_product<kBg, Scalar>(by_g_, i, in, out[kPsi + i]);
@@ -92,7 +93,7 @@ class StepRows {
     out[kPsi + 1] -= turn_ * in[kPsi];
   }
 
-  void velocity(const Column& in, Column& out) const {
+  [[gnu::always_inline]] void velocity(const Column& in, Column& out) const {
     Column both;  // the sum of before and after: twice the mean
     Column middle;
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
@@ -115,7 +116,7 @@ class StepRows {
     out[kDv + 1] -= turn_ * both[kDv];
   }
 
-  void position(const Column& in, Column& out) const {
+  [[gnu::always_inline]] void position(const Column& in, Column& out) const {
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
       out[kDr + i] = in[kDr + i] + half_dt_ * in[kDv + i] + half_dt_ * out[kDv + i];
     });
@@ -137,12 +138,9 @@ lanes::Diagonal<Scalar> diagonal_of(const ProcessNoise& noise, double dt_s, doub
                                     double g_g) {
   lanes::Diagonal<Scalar> diagonal;
   const ErrorVector half_q = noise_variance(noise, 0.5 * dt_s);
-  for (int i = 0; i < kErrorStates; ++i) {
-    diagonal.noise[i] = static_cast<Scalar>(half_q(i));
-    diagonal.decay[i] = static_cast<Scalar>(i < kBa ? 1.0 : i < kBg ? a_a : g_g);
-  }
-  diagonal.noise[kErrorStates] = 0;
-  diagonal.decay[kErrorStates] = 0;
+  for (int i = 0; i < kErrorStates; ++i) diagonal.noise[i] = static_cast<Scalar>(half_q(i));
+  diagonal.a_a = static_cast<Scalar>(a_a);
+  diagonal.g_g = static_cast<Scalar>(g_g);
   return diagonal;
 }
 

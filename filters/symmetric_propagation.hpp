@@ -17,10 +17,19 @@ template <class Scalar>
 using Column = Array<VectorOf<Scalar>, kErrorStates + 1>;
 
 /// The part of the diagonal noise that is added on each side, and what the biases are scaled by.
+/// Single numbers, not lanes: a load of lanes just stored one by one would wait for the stores.
 template <class Scalar>
 struct Diagonal {
-  Array<Scalar, kErrorStates + 1> noise;
-  Array<Scalar, kErrorStates + 1> decay;  // 1 for the motion
+  Array<Scalar, kErrorStates> noise;
+  Scalar a_a;
+  Scalar g_g;
+
+  Scalar decay(int bias) const { return bias < kBg ? a_a : g_g; }
+
+  /// For a block of rows from `start` on; means nothing for the motion's.
+  [[gnu::always_inline]] VectorOf<Scalar> decay_from(int start) const {
+    return first_of<Scalar>(kBg - start, VectorOf<Scalar>{} + a_a, VectorOf<Scalar>{} + g_g);
+  }
 };
 
 /// W^T = (P + noise) Phi^T, its columns in blocks of lanes.
@@ -33,12 +42,11 @@ template <class Scalar, int N, class Rows>
   Transported<Scalar, N> W;
   unrolled<kBlocks<Scalar, N>>([&](auto block) __attribute__((always_inline)) {
     constexpr int kStart = start_of<Scalar, N>(block);
-    const VectorOf<Scalar> noise = load(&diagonal.noise[kStart]);
     Column<Scalar> in;
     unrolled<kErrorStates>([&](auto k) __attribute__((always_inline)) {
       in[k] = load(P.data() + N * k + kStart);
       if constexpr (k >= kStart && k < kStart + kCount<Scalar>) {
-        in[k] += only<Scalar>(k - kStart, noise);
+        in[k] += only<Scalar>(k - kStart, VectorOf<Scalar>{} + diagonal.noise[k]);
       }
     });
     Column<Scalar> out;
@@ -75,7 +83,7 @@ template <class Scalar, int N>
   unrolled<kBlocks<Scalar, N>>([&](auto block) __attribute__((always_inline)) {
     constexpr int kStart = start_of<Scalar, N>(block);
     if constexpr (kStart + kCount < Scalar >> kBa) {
-      const VectorOf<Scalar> decay = load(&diagonal.decay[kStart]);
+      const VectorOf<Scalar> decay = diagonal.decay_from(kStart);
       // Rows of the motion in the same block are written over by store_motion_rows().
       unrolled<kMotionStates>([&](auto i) __attribute__((always_inline)) {
         store<Scalar>(P.data() + N * i + kStart, decay * W[i][block]);
@@ -99,7 +107,7 @@ template <int first, int end, class Scalar, int N, class Rows>
   unrolled<kErrorStates>([&](auto j) __attribute__((always_inline)) {
     Scalar* to = P.data() + N * j + first;
     if constexpr (j < end) store<Scalar>(to, out[j]);
-    if constexpr (j >= kBa) store<Scalar>(to, diagonal.decay[j] * in[j]);
+    if constexpr (j >= kBa) store<Scalar>(to, diagonal.decay(j) * in[j]);
   });
 }
 
@@ -107,8 +115,8 @@ template <class Scalar, int N>
 void store_biases(Eigen::Matrix<Scalar, N, N>& P, const Diagonal<Scalar>& diagonal) {
   for (int j = kBa; j < kErrorStates; ++j) {
     P(j, j) += diagonal.noise[j];
-    if (diagonal.decay[kBa] == 1 && diagonal.decay[kBg] == 1) continue;
-    for (int i = kBa; i < kErrorStates; ++i) P(i, j) *= diagonal.decay[i] * diagonal.decay[j];
+    if (diagonal.a_a == 1 && diagonal.g_g == 1) continue;
+    for (int i = kBa; i < kErrorStates; ++i) P(i, j) *= diagonal.decay(i) * diagonal.decay(j);
   }
 }
 

@@ -24,7 +24,14 @@ struct ProcessNoise {
 };
 
 /// Variance that the noise adds to each error over a time.
-ErrorVector noise_variance(const ProcessNoise& noise, double dt_s);
+inline ErrorVector noise_variance(const ProcessNoise& noise, double dt_s) {
+  ErrorVector variance = ErrorVector::Zero();
+  variance.segment<3>(kPsi).setConstant(dt_s * noise.attitude_rad2_per_s);
+  variance.segment<3>(kDv).setConstant(dt_s * noise.velocity_m2_per_s3);
+  variance.segment<3>(kBa).setConstant(dt_s * noise.b_a_m2_per_s5);
+  variance.segment<3>(kBg).setConstant(dt_s * noise.b_g_rad2_per_s3);
+  return variance;
+}
 
 /// What the model means to the filter. An in-run bias without a turn-on part is a Gauss-Markov
 /// state. With one it is a random walk of the same drive: a decaying state would pull the constant
