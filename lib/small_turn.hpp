@@ -11,7 +11,8 @@ namespace leeway {
 inline constexpr double kSmallTurnSq = 0.01;
 
 /// left_jacobian_times() for |phi|^2 < kSmallTurnSq.
-inline Triple small_left_jacobian_times(const Triple& phi_rad, const Triple& v) {
+[[gnu::always_inline]] inline Triple small_left_jacobian_times(const Triple& phi_rad,
+                                                               const Triple& v) {
   const double t = squared_norm(phi_rad);
   const double versine_ratio =
       1.0 / 2 + t * (-1.0 / 24 + t * (1.0 / 720 + t * (-1.0 / 40320 + t * (1.0 / 3628800))));
@@ -22,25 +23,25 @@ inline Triple small_left_jacobian_times(const Triple& phi_rad, const Triple& v) 
 }
 
 /// turned() with left_a = (0, 0, left_z) and both turns small.
-inline Quadruple turned(double left_z_rad, const Quadruple& q, const Triple& right_rad) {
+[[gnu::always_inline]] inline Quadruple turned(double left_z_rad, const Quadruple& q,
+                                               const Triple& right_rad) {
   // exp(phi) - 1: its scalar part and the factor of phi in its vector part.
   const double t = squared_norm(right_rad);
   const double scalar =
       t * (-1.0 / 8 + t * (1.0 / 384 + t * (-1.0 / 46080 + t * (1.0 / 10321920))));
   const double factor = 1.0 / 2 + t * (-1.0 / 48 + t * (1.0 / 3840 + t * (-1.0 / 645120)));
   const Triple p = factor * right_rad;
-  const Quadruple r =
-      q + Quadruple{scalar * q.w - (q.x * p.x + q.y * p.y + q.z * p.z),
-                    scalar * q.x + (q.w * p.x + q.y * p.z - q.z * p.y),
-                    scalar * q.y + (q.w * p.y + q.z * p.x - q.x * p.z),
-                    scalar * q.z + (q.w * p.z + q.x * p.y - q.y * p.x)};
+  const Quadruple r = q + Quadruple{scalar * q.w - (q.x * p.x + q.y * p.y + q.z * p.z),
+                                    scalar * q.x + (q.w * p.x + q.y * p.z - q.z * p.y),
+                                    scalar * q.y + (q.w * p.y + q.z * p.x - q.x * p.z),
+                                    scalar * q.z + (q.w * p.z + q.x * p.y - q.y * p.x)};
   // The norm is restored within the addition, as rotation.cpp says.
   const double s = left_z_rad * left_z_rad;
   const double left = left_z_rad * (1.0 / 2 + s * (-1.0 / 48 + s * (1.0 / 3840)));
-  const double scale = s * (-1.0 / 8 + s * (1.0 / 384 + s * (-1.0 / 46080))) +
-                       (0.5 - 0.5 * squared_norm(r));
-  return r + Quadruple{scale * r.w - left * r.z, scale * r.x - left * r.y,
-                       scale * r.y + left * r.x, scale * r.z + left * r.w};
+  const double scale =
+      s * (-1.0 / 8 + s * (1.0 / 384 + s * (-1.0 / 46080))) + (0.5 - 0.5 * squared_norm(r));
+  return r + Quadruple{scale * r.w - left * r.z, scale * r.x - left * r.y, scale * r.y + left * r.x,
+                       scale * r.z + left * r.w};
 }
 
 }  // namespace leeway

@@ -7,6 +7,7 @@
 #include "leeway/rotation.hpp"
 #include "small_turn.hpp"
 #include "triple.hpp"
+#include "zonal_gravity.hpp"
 
 namespace leeway {
 namespace {
@@ -23,7 +24,7 @@ struct Increment {
   Triple dv_b;
 };
 
-Increment increment(const ImuIncrement& inc) {
+[[gnu::always_inline]] inline Increment increment(const ImuIncrement& inc) {
   return {inc.dt_s, triple(inc.dtheta_b_rad), triple(inc.dv_b_mps)};
 }
 
@@ -35,7 +36,7 @@ struct PairTerms {
   Triple sculling_b_mps{};
 };
 
-PairTerms pair_terms(const Increment& inc, const Increment& last) {
+[[gnu::always_inline]] inline PairTerms pair_terms(const Increment& inc, const Increment& last) {
   const double factor = inc.dt_s * inc.dt_s / (6.0 * last.dt_s * (last.dt_s + inc.dt_s));
   return {factor * cross(last.dtheta_b, inc.dtheta_b),
           factor * (cross(last.dtheta_b, inc.dv_b) + cross(last.dv_b, inc.dtheta_b))};
@@ -48,7 +49,8 @@ struct Curvature {
   Triple last_e_m{};
 };
 
-Curvature curvature(double dt_s, const Triple& last_dv_e_mps, double last_dt_s) {
+[[gnu::always_inline]] inline Curvature curvature(double dt_s, const Triple& last_dv_e_mps,
+                                                  double last_dt_s) {
   const double own_s = -dt_s * dt_s / (6.0 * (dt_s + last_dt_s));
   return {own_s, -own_s * dt_s / last_dt_s * last_dv_e_mps};
 }
@@ -92,7 +94,7 @@ StrapdownStep trapezoid_step(NavState& state, const ImuIncrement& inc) {
 }
 
 /// The integral of the force over the increment, in the body axes of its start.
-Triple force_integral(const Increment& inc) {
+[[gnu::always_inline]] inline Triple force_integral(const Increment& inc) {
   if (squared_norm(inc.dtheta_b) < kSmallTurnSq) {
     return small_left_jacobian_times(inc.dtheta_b, inc.dv_b);
   }
@@ -100,7 +102,8 @@ Triple force_integral(const Increment& inc) {
 }
 
 /// The Earth's turn on the left, the body's on the right.
-void turn(Eigen::Quaterniond& q_eb, const Quadruple& q, double earth_rad, const Triple& phi_b_rad) {
+[[gnu::always_inline]] inline void turn(Eigen::Quaterniond& q_eb, const Quadruple& q,
+                                        double earth_rad, const Triple& phi_b_rad) {
   if (squared_norm(phi_b_rad) < kSmallTurnSq && earth_rad * earth_rad < kSmallTurnSq) {
     assign(q_eb, turned(-earth_rad, q, phi_b_rad));
   } else {
@@ -108,8 +111,22 @@ void turn(Eigen::Quaterniond& q_eb, const Quadruple& q, double earth_rad, const 
   }
 }
 
+/// gravity_e() in line.
+template <GravityModel gravity>
+[[gnu::always_inline]] inline Triple gravity_of(const Triple& r_e_m) {
+  if constexpr (gravity == GravityModel::kNormal) {
+    return zonal::gravity_e<zonal::kNormalDegree>(r_e_m);
+  } else if constexpr (gravity == GravityModel::kJ2) {
+    return zonal::gravity_e<zonal::kJ2Degree>(r_e_m);
+  } else {
+    return triple(gravity_e<gravity>(vector(r_e_m)));
+  }
+}
+
 /// omega x v for omega = (0, 0, rate).
-Triple turn_about_z(double rate, const Triple& v) { return {-rate * v.y, rate * v.x, 0.0}; }
+[[gnu::always_inline]] inline Triple turn_about_z(double rate, const Triple& v) {
+  return {-rate * v.y, rate * v.x, 0.0};
+}
 
 /// What a step of the increment schemes did.
 struct IncrementMotion {
@@ -119,7 +136,7 @@ struct IncrementMotion {
   Triple dv_e_mps;    // change of the velocity
 };
 
-StrapdownStep report(const IncrementMotion& motion) {
+[[gnu::always_inline]] inline StrapdownStep report(const IncrementMotion& motion) {
   const auto& [C, phi, dv_f_e, dv_e] = motion;
   StrapdownStep step;
   // C + C skew(phi) / 2, by columns.
@@ -135,8 +152,10 @@ StrapdownStep report(const IncrementMotion& motion) {
 /// Exact for a rate and force constant within the increment, plus the terms of a pair. Second order
 /// in what is not the body's.
 template <GravityModel gravity, EarthRotation rotation>
-IncrementMotion increment_motion(NavState& state, const Increment& inc, const PairTerms& terms,
-                                 const Curvature& curve) {
+[[gnu::always_inline]] inline IncrementMotion increment_motion(NavState& state,
+                                                               const Increment& inc,
+                                                               const PairTerms& terms,
+                                                               const Curvature& curve) {
   constexpr double kOmega = rotation == EarthRotation::kOn ? wgs84::kRotationRateRadps : 0.0;
   const double dt = inc.dt_s;
   const Quadruple q = quadruple(state.q_eb);
@@ -150,7 +169,7 @@ IncrementMotion increment_motion(NavState& state, const Increment& inc, const Pa
   const Triple dv_f = dv_at_start - turn_about_z(0.5 * dt * kOmega, dv_at_start);
   motion.dv_f_e_mps = dv_f;
 
-  const Triple g_dt = dt * triple(gravity_e<gravity>(vector(r + 0.5 * dt * v)));
+  const Triple g_dt = dt * gravity_of<gravity>(r + 0.5 * dt * v);
   const Triple v_mid = v + 0.5 * (dv_f + g_dt - turn_about_z(2.0 * dt * kOmega, v));
   const Triple dv = (dv_f + g_dt) - turn_about_z(2.0 * dt * kOmega, v_mid);
   motion.dv_e_mps = dv;
@@ -320,25 +339,30 @@ StrapdownStep runge_kutta_step(NavState& state, const ImuIncrement& inc, ImuHist
   return {C_eb_mean, C_eb_mean * inc.dv_b_mps};
 }
 
+/// The step but for the state's time.
+template <Scheme scheme, GravityModel gravity, EarthRotation rotation>
+StrapdownStep motion_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
+  if constexpr (scheme == Scheme::kExplicitEuler) {
+    return euler_step<gravity, rotation, false>(state, inc);
+  } else if constexpr (scheme == Scheme::kSemiImplicitEuler) {
+    return euler_step<gravity, rotation, true>(state, inc);
+  } else if constexpr (scheme == Scheme::kTrapezoid) {
+    return trapezoid_step<gravity, rotation>(state, inc);
+  } else if constexpr (scheme == Scheme::kOneSample) {
+    return report(increment_motion<gravity, rotation>(state, increment(inc), {}, {}));
+  } else if constexpr (scheme == Scheme::kTwoSample) {
+    return two_sample_step<gravity, rotation>(state, inc, history);
+  } else {
+    return runge_kutta_step<gravity, rotation>(state, inc, history);
+  }
+}
+
 }  // namespace
 
 template <Scheme scheme, GravityModel gravity, EarthRotation rotation>
 StrapdownStep strapdown_step(NavState& state, const ImuIncrement& inc, ImuHistory& history) {
   if (history.count > 0 && history.recent[0].time != state.time) history = ImuHistory{};
-  StrapdownStep step;
-  if constexpr (scheme == Scheme::kExplicitEuler) {
-    step = euler_step<gravity, rotation, false>(state, inc);
-  } else if constexpr (scheme == Scheme::kSemiImplicitEuler) {
-    step = euler_step<gravity, rotation, true>(state, inc);
-  } else if constexpr (scheme == Scheme::kTrapezoid) {
-    step = trapezoid_step<gravity, rotation>(state, inc);
-  } else if constexpr (scheme == Scheme::kOneSample) {
-    step = report(increment_motion<gravity, rotation>(state, increment(inc), {}, {}));
-  } else if constexpr (scheme == Scheme::kTwoSample) {
-    step = two_sample_step<gravity, rotation>(state, inc, history);
-  } else {
-    step = runge_kutta_step<gravity, rotation>(state, inc, history);
-  }
+  const StrapdownStep step = motion_step<scheme, gravity, rotation>(state, inc, history);
   state.time = inc.time;
   return step;
 }

@@ -72,7 +72,9 @@ struct Columns {
   Triple z;
 };
 
-inline Triple operator*(const Columns& m, const Triple& v) { return v.x * m.x + v.y * m.y + v.z * m.z; }
+inline Triple operator*(const Columns& m, const Triple& v) {
+  return v.x * m.x + v.y * m.y + v.z * m.z;
+}
 
 /// Of the rotation by a unit quaternion.
 inline Columns rotation_matrix(const Quadruple& q) {

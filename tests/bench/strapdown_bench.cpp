@@ -12,8 +12,9 @@ void step(benchmark::State& state, const StrapdownPolicy& policy) {
   NavState nav = test::bench_start().nav;
   ImuHistory history;
   ImuIncrement inc = test::bench_increment();
+  const Duration dt = duration_from_seconds(inc.dt_s);
   for (auto _ : state) {
-    inc.time = nav.time + duration_from_seconds(inc.dt_s);
+    inc.time = nav.time + dt;
     benchmark::DoNotOptimize(strapdown(nav, inc, history));
   }
 }
