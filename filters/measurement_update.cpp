@@ -105,7 +105,7 @@ class WholeMeasurement {
  public:
   using Matrix = Eigen::Matrix<Scalar, N, N>;
 
-  /// U = P H^T and the lower half of S = H P H^T + 1.
+  /// P H^T, and the lower half of S = H P H^T + 1.
   WholeMeasurement(const Matrix& P, const RowColumns<Scalar, N>& H) {
     for (int i = 0; i < rows; ++i) {
       const Blocks<Scalar, N> u = product<Scalar, N>(P, H.data() + N * i);
@@ -145,7 +145,7 @@ class WholeMeasurement {
       unrolled<rows>([&](auto i) __attribute__((always_inline)) {
         u[i] = load(u_of(i) + row);
         unrolled<i>([&](auto j) __attribute__((always_inline)) { u[i] -= L[i][j] * u[j]; });
-        store<Scalar>(u_of(i) + row, u[i]);
+        store<Scalar>(independent_.data() + N * i + row, u[i]);
         const VectorOf<Scalar> gain = inverse_[i] * u[i];
         store<Scalar>(gain_.data() + N * i + row, gain);
         x += y(int{i}) * gain;
@@ -160,7 +160,8 @@ class WholeMeasurement {
     change_symmetric<Scalar, N>(
         P, [&](int j, int b, VectorOf<Scalar> lanes_of_P) __attribute__((always_inline)) {
           unrolled<rows>([&](auto i) __attribute__((always_inline)) {
-            lanes_of_P -= gain_(j, int{i}) * load(U_.data() + N * i + start_of<Scalar, N>(b));
+            lanes_of_P -=
+                gain_(j, int{i}) * load(independent_.data() + N * i + start_of<Scalar, N>(b));
           });
           return lanes_of_P;
         });
@@ -169,8 +170,9 @@ class WholeMeasurement {
  private:
   Scalar* u_of(int i) { return U_.data() + N * i; }
 
-  Eigen::Matrix<Scalar, N, rows> U_;
-  Eigen::Matrix<Scalar, N, rows> gain_;  // U D^-1
+  Eigen::Matrix<Scalar, N, rows> U_;            // P H^T
+  Eigen::Matrix<Scalar, N, rows> independent_;  // P H^T L^-T: not in place, as blocks overlap
+  Eigen::Matrix<Scalar, N, rows> gain_;         // of the independent rows
   Eigen::Matrix<Scalar, N, 1> x_;
   lanes::Array<lanes::Array<Scalar, rows>, rows> S_;
   lanes::Array<Scalar, rows> inverse_;
