@@ -233,7 +233,6 @@ Scalar update_by_row(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>
                                            const Eigen::Matrix<Scalar, N, 1>&, UpdateForm)
 LEEWAY_INSTANTIATE(float, kPaddedStates);
 LEEWAY_INSTANTIATE(double, kPaddedStates);
-LEEWAY_INSTANTIATE(long double, kPaddedStates);
 LEEWAY_INSTANTIATE(double, kErrorStates);
 LEEWAY_INSTANTIATE(double, kJointStates);
 #undef LEEWAY_INSTANTIATE

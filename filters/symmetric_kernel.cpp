@@ -218,7 +218,6 @@ bool SymmetricKernel<Scalar>::take_at_once(ErrorVector& x_hat, const Measurement
 
 template class SymmetricKernel<float>;
 template class SymmetricKernel<double>;
-template class SymmetricKernel<long double>;
 template void propagate_symmetric<double, kErrorStates>(ErrorMatrix&, const Transition&,
                                                         const ProcessNoise&);
 template void propagate_symmetric<double, kErrorStates>(ErrorMatrix&, const ErrorDynamics&,
