@@ -21,7 +21,8 @@ count() {
   dir=$(mktemp -d)
   trap 'rm -rf "$dir"' RETURN
   GLIBC_TUNABLES=glibc.cpu.hwcaps=$plain_x86_64 valgrind --tool=callgrind \
-    --collect-atstart=no --callgrind-out-file="$dir/out" --log-file="$dir/log" "$program" || { cat "$dir/log" >&2 && return 1; }
+    --collect-atstart=no --callgrind-out-file="$dir/out" --log-file="$dir/log" "$program" ||
+    { cat "$dir/log" >&2 && return 1; }
   awk '/^desc: Trigger: Client Request: / { calls = $5; name = $6 }
        /^totals: / && name { printf "%-26s %12.1f\n", name, $2 / calls; name = "" }' \
     $(printf '%s\n' "$dir"/out.* | sort -V)
@@ -33,8 +34,8 @@ toolchain="$("$program" --build), $(valgrind --version)"
 
 if [[ $mode == --update ]]; then
   counts=$(count)
-  printf '# %s\n# instructions per call; ./run counts writes this file\n%s\n' "$toolchain" "$counts" \
-    | tee "$baseline"
+  printf '# %s\n' "$toolchain" "instructions per call; ./run counts writes this file" |
+    cat - <(echo "$counts") | tee "$baseline"
   exit
 fi
 
@@ -54,6 +55,6 @@ count | awk -v tolerance=$tolerance_percent '
   }
   END {
     for (name in expected) { printf "%-26s is in the baseline only\n", name; bad = 1 }
-    if (bad) print "More than " tolerance " % apart. If it is meant, ./run counts makes the baseline anew."
+    if (bad) print "More than " tolerance " % apart. If it is meant: ./run counts"
     exit bad
   }' "$baseline" -
