@@ -28,7 +28,7 @@ count() {
     $(printf '%s\n' "$dir"/out.* | sort -V)
 }
 
-[[ -x $program ]] || skip "built without valgrind's headers (Debian: valgrind)"
+[[ -x $program ]] || skip "not built: no valgrind/callgrind.h (Debian: valgrind)"
 command -v valgrind >/dev/null || skip "no valgrind (Debian: valgrind)"
 toolchain="$("$program" --build), $(valgrind --version)"
 
