@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -57,7 +59,13 @@ const Drive& drive() {
   return logs;
 }
 
-/// Of every number of lines with commas between them.
+/// For the table to show how much of the IMU log is read in a second.
+void count_bytes(benchmark::State& state) {
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(drive().imu));
+  state.SetBytesProcessed(state.iterations() * size);
+}
+
+/// Of lines with commas between the numbers.
 double sum_of_numbers(std::string_view lines) {
   const char* p = lines.data();
   const char* const end = p + lines.size();
@@ -93,11 +101,13 @@ void from_chars_in_memory(benchmark::State& state) {
   const std::string text = test::read_file(drive().imu);
   const std::string_view lines = std::string_view(text).substr(text.find('\n') + 1);
   for (auto _ : state) benchmark::DoNotOptimize(sum_of_numbers(lines));
+  count_bytes(state);
 }
 
 void from_chars_in_file(benchmark::State& state) {
   drive();
   for (auto _ : state) benchmark::DoNotOptimize(sum_of_numbers_in_file(drive().imu));
+  count_bytes(state);
 }
 
 void read(benchmark::State& state) {
@@ -106,6 +116,7 @@ void read(benchmark::State& state) {
     ImuLogReader reader(drive().imu);
     while (const auto inc = reader.next()) benchmark::DoNotOptimize(&*inc);
   }
+  count_bytes(state);
 }
 
 /// The drive through a filter, each fix before the increment that ends after it.
