@@ -48,6 +48,11 @@ class MedianTable : public benchmark::BenchmarkReporter {
     return values;
   }
 
+  static double median(const std::vector<Run>& runs,
+                       const std::function<double(const Run&)>& value_of) {
+    return sorted(runs, value_of)[runs.size() / 2];
+  }
+
   static void print(const std::vector<Run>& runs) {
     const Run& first = runs.front();
     const std::string name = first.run_name.function_name +
@@ -59,10 +64,13 @@ class MedianTable : public benchmark::BenchmarkReporter {
     const std::vector<double> times = sorted(runs, time_of);
     std::printf("%-58s %10.4g %10.4g %10.4g %s", name.c_str(), times[times.size() / 2],
                 times.front(), times.back(), benchmark::GetTimeUnitString(first.time_unit));
+    if (first.run_name.time_type.starts_with("process_time")) {
+      std::printf("  cpu %.4g",
+                  median(runs, [](const Run& run) { return run.GetAdjustedCPUTime(); }));
+    }
     for (const auto& [counter, ignored] : first.counters) {
-      const auto values =
-          sorted(runs, [&](const Run& run) { return run.counters.at(counter).value; });
-      std::printf("  %s %.4g", counter.c_str(), values[values.size() / 2]);
+      std::printf("  %s %.4g", counter.c_str(),
+                  median(runs, [&](const Run& run) { return run.counters.at(counter).value; }));
     }
     std::printf("\n");
   }

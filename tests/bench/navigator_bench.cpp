@@ -73,6 +73,13 @@ void push_fix(benchmark::State& state, const VehicleConfig& vehicle, int late) {
   pushes.report(state);
 }
 
+void solution(benchmark::State& state) {
+  const test::Lap lap;
+  Navigator navigator = lap.navigator();
+  for (std::int64_t k = 1; k <= 10; ++k) navigator.push(lap.increment(k));
+  for (auto _ : state) benchmark::DoNotOptimize(navigator.solution());
+}
+
 constexpr int k500Ms = test::Lap::kRateHz / 2;
 
 BENCHMARK_CAPTURE(push_imu, plain, VehicleConfig{})->UseManualTime();
@@ -89,6 +96,7 @@ BENCHMARK_CAPTURE(push_fix, plain_500_ms_late, VehicleConfig{}, k500Ms)
 BENCHMARK_CAPTURE(push_fix, car_500_ms_late, VehicleConfig::car(), k500Ms)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
+BENCHMARK(solution);
 
 }  // namespace
 }  // namespace leeway

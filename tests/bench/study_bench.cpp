@@ -63,8 +63,17 @@ void campaign_ranks(benchmark::State& state) {
 BENCHMARK(analysis_track)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(analysis, whole, false)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(analysis, by_source, true)->Unit(benchmark::kMillisecond);
-BENCHMARK(campaign_threads)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(campaign_ranks)->Iterations(1)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(campaign_threads)
+    ->Arg(1)
+    ->Arg(2)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(campaign_ranks)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace leeway::sim
