@@ -17,15 +17,16 @@ plain_x86_64+=,-SSSE3,-SSE4_1,-SSE4_2
 
 # "name instructions", per call of each kernel.
 count() {
-  local dir
+  local dir dumps
   dir=$(mktemp -d)
   trap 'rm -rf "$dir"' RETURN
   GLIBC_TUNABLES=glibc.cpu.hwcaps=$plain_x86_64 valgrind --tool=callgrind \
     --collect-atstart=no --callgrind-out-file="$dir/out" --log-file="$dir/log" "$program" ||
     { cat "$dir/log" >&2 && return 1; }
+  mapfile -t dumps < <(printf '%s\n' "$dir"/out.* | sort -V)
   awk '/^desc: Trigger: Client Request: / { calls = $5; name = $6 }
        /^totals: / && name { printf "%-26s %12.1f\n", name, $2 / calls; name = "" }' \
-    $(printf '%s\n' "$dir"/out.* | sort -V)
+    "${dumps[@]}"
 }
 
 [[ -x $program ]] || skip "not built: no valgrind/callgrind.h (Debian: valgrind)"
