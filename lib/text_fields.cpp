@@ -56,6 +56,23 @@ std::optional<LineDamage> parse_value(const Column& column, const char*& p, cons
   return std::isfinite(value) ? LineDamage::kOutOfRange : LineDamage::kNotFinite;
 }
 
+// Nearly every field is no more than a number in range. Of any other nothing is taken.
+template <Separator separator>
+bool take_plain_number(const Column& column, const char*& p, const char* end,
+                       std::span<double> values) {
+  if (column.slot < 0) return false;
+  double& value = values[static_cast<std::size_t>(column.slot)];
+  const auto [after, error] = std::from_chars(p, end, value);
+  if (error != std::errc{} || !(value >= column.min && value <= column.max)) return false;
+  if (after == end) {
+    p = end;
+    return true;
+  }
+  if (!is_separator<separator>(*after)) return false;
+  p = after + 1;
+  return true;
+}
+
 // Times with an exponent, and whatever else is no plain decimal.
 std::optional<LineDamage> parse_time_as_double(const char*& p, const char* end, Time& time) {
   double seconds = 0.0;
@@ -99,6 +116,38 @@ std::optional<LineDamage> parse_time(const char*& first, const char* last, Time&
   return std::nullopt;
 }
 
+namespace {
+
+/// Any field, and the separator behind it.
+template <Separator separator>
+std::optional<Fault> parse_field(const Column& column, const char*& p, const char* end, Time& time,
+                                 std::span<double> values) {
+  const char* const field = p;
+  const auto fault = [field, end](LineDamage reason) {
+    const char* const field_end = find_field_end<separator>(field, end);
+    return Fault{reason, {field, static_cast<std::size_t>(field_end - field)}};
+  };
+  if (column.slot == Column::kIgnored) {
+    p = find_field_end<separator>(p, end);
+  } else if (p == end || is_separator<separator>(*p)) {
+    if (!column.optional) return fault(LineDamage::kMissingField);
+    values[static_cast<std::size_t>(column.slot)] = std::numeric_limits<double>::quiet_NaN();
+  } else {
+    const auto damage =
+        column.slot == Column::kTime
+            ? parse_time(p, end, time)
+            : parse_value(column, p, end, values[static_cast<std::size_t>(column.slot)]);
+    if (damage) return fault(*damage);
+  }
+  if constexpr (separator == Separator::kComma) p = skip_to_field<separator>(p, end);
+  if (p == end) return std::nullopt;
+  if (!is_separator<separator>(*p)) return fault(LineDamage::kNotANumber);
+  ++p;
+  return std::nullopt;
+}
+
+}  // namespace
+
 LineParser::LineParser(Separator separator, std::vector<Column> columns)
     : separator_(separator), columns_(std::move(columns)) {
   while (!columns_.empty() && columns_.back().slot == Column::kIgnored) columns_.pop_back();
@@ -115,29 +164,10 @@ std::optional<Fault> LineParser::parse_fields(std::string_view line, Time& time,
                                               std::span<double> values) const {
   const char* p = line.data();
   const char* const end = p + line.size();
-  const auto fault = [end](LineDamage reason, const char* field) {
-    const char* const field_end = find_field_end<separator>(field, end);
-    return Fault{reason, {field, static_cast<std::size_t>(field_end - field)}};
-  };
   for (const Column& column : columns_) {
     p = skip_to_field<separator>(p, end);
-    const char* const field = p;
-    if (column.slot == Column::kIgnored) {
-      p = find_field_end<separator>(p, end);
-    } else if (p == end || is_separator<separator>(*p)) {
-      if (!column.optional) return fault(LineDamage::kMissingField, field);
-      values[static_cast<std::size_t>(column.slot)] = std::numeric_limits<double>::quiet_NaN();
-    } else {
-      const auto damage =
-          column.slot == Column::kTime
-              ? parse_time(p, end, time)
-              : parse_value(column, p, end, values[static_cast<std::size_t>(column.slot)]);
-      if (damage) return fault(*damage, field);
-    }
-    if constexpr (separator == Separator::kComma) p = skip_to_field<separator>(p, end);
-    if (p == end) continue;
-    if (!is_separator<separator>(*p)) return fault(LineDamage::kNotANumber, field);
-    ++p;
+    if (take_plain_number<separator>(column, p, end, values)) continue;
+    if (const auto fault = parse_field<separator>(column, p, end, time, values)) return fault;
   }
   return std::nullopt;
 }

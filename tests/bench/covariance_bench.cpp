@@ -1,10 +1,9 @@
-// What the covariance costs: a predict and a fix, by kernel and precision. Build with the preset
-// bench. Every kernel is restarted now and then, before its variances shrink or grow to nothing.
+// What the covariance costs: a predict and a fix, by kernel and precision.
+// Every kernel is restarted now and then, before its variances shrink or grow to nothing.
 #include <benchmark/benchmark.h>
 
+#include "bench/covariance_case.hpp"
 #include "bench/motion.hpp"
-#include "leeway/filters/covariance.hpp"
-#include "leeway/filters/covariance_kernel.hpp"
 #include "leeway/filters/dense_kernel.hpp"
 #include "leeway/filters/square_root_kernel.hpp"
 #include "leeway/filters/symmetric_kernel.hpp"
@@ -12,37 +11,6 @@
 
 namespace leeway {
 namespace {
-
-constexpr ProcessNoise kNoise{1e-8, 1e-6, 1e-9, 1e-12};
-
-ErrorMatrix start_covariance() {
-  ErrorVector sigma;
-  sigma << Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.1),
-      Eigen::Vector3d::Constant(2.0), Eigen::Vector3d::Constant(0.05),
-      Eigen::Vector3d::Constant(1e-3);
-  ErrorMatrix P = sigma.cwiseAbs2().asDiagonal();
-  Transition Phi;
-  for (int k = 0; k < 200; ++k) advance(Phi, test::bench_dynamics());
-  propagate(P, Phi, kNoise);  // so that no correlation is zero
-  return P;
-}
-
-/// Position and velocity of an antenna beside the IMU, whitened.
-MeasurementRows fix_rows() {
-  const Eigen::Matrix3d C_eb = test::bench_start().nav.q_eb.toRotationMatrix();
-  const Eigen::Vector3d lever_b_m(0.5, 0.3, -1.2);
-  const ImuIncrement inc = test::bench_increment();
-  const Eigen::Vector3d omega_b_radps = inc.dtheta_b_rad / inc.dt_s;
-  MeasurementRows H = MeasurementRows::Zero(6, kErrorStates);
-  H.block<3, 3>(0, kPsi) = -skew(C_eb * lever_b_m);
-  H.block<3, 3>(0, kDr).setIdentity();
-  H.block<3, 3>(3, kPsi) = -skew(C_eb * omega_b_radps.cross(lever_b_m));
-  H.block<3, 3>(3, kDv).setIdentity();
-  H.block<3, 3>(3, kBg) = C_eb * skew(lever_b_m);
-  H.topRows<3>() /= 2.0;
-  H.bottomRows<3>() /= 0.05;
-  return H;
-}
 
 /// @param act  on a kernel; it is made anew after 200 of them
 template <class Kernel, class F>
@@ -62,33 +30,33 @@ void repeat(benchmark::State& state, const Kernel& fresh, const F& act) {
 template <class Kernel>
 void predict_step(benchmark::State& state) {
   const ErrorDynamics dynamics = test::bench_dynamics();
-  repeat(state, Kernel(start_covariance()),
-         [&](Kernel& kernel) { kernel.propagate(dynamics, kNoise); });
+  repeat(state, Kernel(test::bench_covariance()),
+         [&](Kernel& kernel) { kernel.propagate(dynamics, test::kBenchNoise); });
 }
 
 template <class Kernel>
 void predict_advance(benchmark::State& state) {
   const ErrorDynamics dynamics = test::bench_dynamics();
-  repeat(state, Kernel(start_covariance()), [&](Kernel& kernel) {
+  repeat(state, Kernel(test::bench_covariance()), [&](Kernel& kernel) {
     Transition Phi;
     advance(Phi, dynamics);
-    kernel.propagate(Phi, kNoise);
+    kernel.propagate(Phi, test::kBenchNoise);
   });
 }
 
 template <class Kernel>
 void predict_aggregated(benchmark::State& state) {
-  Transition Phi;
-  for (int k = 0; k < 20; ++k) advance(Phi, test::bench_dynamics());
-  repeat(state, Kernel(start_covariance()), [&](Kernel& kernel) { kernel.propagate(Phi, kNoise); });
+  const Transition Phi = test::bench_transition(20);
+  repeat(state, Kernel(test::bench_covariance()),
+         [&](Kernel& kernel) { kernel.propagate(Phi, test::kBenchNoise); });
 }
 
 template <class Kernel, auto... form>
 void fix(benchmark::State& state) {
-  const MeasurementRows H = fix_rows();
+  const MeasurementRows H = test::bench_fix_rows();
   const MeasurementValues z = MeasurementValues::Zero(6);
   ErrorVector x = ErrorVector::Zero();
-  repeat(state, Kernel(start_covariance(), form...),
+  repeat(state, Kernel(test::bench_covariance(), form...),
          [&](Kernel& kernel) { kernel.update(x, H, z); });
 }
 
@@ -98,16 +66,16 @@ void advance_one(benchmark::State& state) {
 }
 
 void dense_triple_product(benchmark::State& state) {
-  Transition step;
-  advance(step, test::bench_dynamics());
-  const ErrorMatrix Phi = dense(step);
-  const ErrorMatrix Q = 1e-12 * start_covariance();
-  repeat(state, start_covariance(), [&](ErrorMatrix& P) { P = Phi * P * Phi.transpose() + Q; });
+  const ErrorMatrix Phi = dense(test::bench_transition(1));
+  const ErrorMatrix Q = 1e-12 * test::bench_covariance();
+  repeat(state, test::bench_covariance(),
+         [&](ErrorMatrix& P) { P = Phi * P * Phi.transpose() + Q; });
 }
 
 void free_propagate_step(benchmark::State& state) {
   const ErrorDynamics dynamics = test::bench_dynamics();
-  repeat(state, start_covariance(), [&](ErrorMatrix& P) { propagate(P, dynamics, kNoise); });
+  repeat(state, test::bench_covariance(),
+         [&](ErrorMatrix& P) { propagate(P, dynamics, test::kBenchNoise); });
 }
 
 BENCHMARK(dense_triple_product);
@@ -123,17 +91,19 @@ BENCHMARK(predict_aggregated<UdKernel<double>>);
 BENCHMARK(predict_aggregated<UdKernel<float>>);
 BENCHMARK(predict_aggregated<SquareRootKernel<double>>);
 BENCHMARK(predict_aggregated<SquareRootKernel<float>>);
+BENCHMARK(fix<DenseKernel<double>, UpdateForm::kSimple>);
 BENCHMARK(fix<DenseKernel<double>, UpdateForm::kJoseph>);
+BENCHMARK(fix<DenseKernel<double>, UpdateForm::kBatch>);
+BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kSimple>);
+BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kJoseph>);
+BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kBatch>);
+BENCHMARK(fix<SymmetricKernel<float>, UpdateForm::kSimple>);
+BENCHMARK(fix<SymmetricKernel<float>, UpdateForm::kJoseph>);
+BENCHMARK(fix<SymmetricKernel<float>, UpdateForm::kBatch>);
 BENCHMARK(fix<UdKernel<double>>);
 BENCHMARK(fix<UdKernel<float>>);
 BENCHMARK(fix<SquareRootKernel<double>>);
 BENCHMARK(fix<SquareRootKernel<float>>);
-BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kJoseph>);
-BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kSimple>);
-BENCHMARK(fix<SymmetricKernel<double>, UpdateForm::kBatch>);
-BENCHMARK(fix<SymmetricKernel<float>, UpdateForm::kJoseph>);
 
 }  // namespace
 }  // namespace leeway
-
-BENCHMARK_MAIN();

@@ -1,4 +1,4 @@
-// What one step of the strapdown costs, scheme by scheme. Build with the preset bench.
+// What one step of the strapdown costs, scheme by scheme.
 #include <benchmark/benchmark.h>
 
 #include "bench/motion.hpp"
@@ -32,5 +32,3 @@ BENCHMARK_CAPTURE(step, runge_kutta_4, {.scheme = Scheme::kRungeKutta4});
 
 }  // namespace
 }  // namespace leeway
-
-BENCHMARK_MAIN();

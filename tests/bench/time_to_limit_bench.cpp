@@ -1,4 +1,4 @@
-// What time_to_limit costs. Build with -DLEEWAY_BUILD_BENCH=ON.
+// What time_to_limit costs.
 #include <benchmark/benchmark.h>
 
 #include "filters/settled.hpp"
@@ -31,14 +31,12 @@ void circle_automotive(benchmark::State& s) { run(s, sim::circle(), ImuClass::kA
 void circle_tactical(benchmark::State& s) { run(s, sim::circle(), ImuClass::kTactical); }
 void circle_marine(benchmark::State& s) { run(s, sim::circle(), ImuClass::kMarine); }
 
-BENCHMARK(straight_automotive)->Arg(1)->Arg(5)->Arg(100);
-BENCHMARK(straight_tactical)->Arg(1)->Arg(5)->Arg(100);
-BENCHMARK(static_marine)->Arg(1)->Arg(5)->Arg(100)->Arg(100'000);
-BENCHMARK(circle_automotive)->Arg(1)->Arg(5)->Arg(100);
-BENCHMARK(circle_tactical)->Arg(1)->Arg(5)->Arg(100);
-BENCHMARK(circle_marine)->Arg(1)->Arg(5)->Arg(100)->Arg(100'000);
+BENCHMARK(straight_automotive)->Arg(1)->Arg(5)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(straight_tactical)->Arg(1)->Arg(5)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(static_marine)->Arg(1)->Arg(5)->Arg(100)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(circle_automotive)->Arg(1)->Arg(5)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(circle_tactical)->Arg(1)->Arg(5)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(circle_marine)->Arg(1)->Arg(5)->Arg(100)->Arg(100'000)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace leeway
-
-BENCHMARK_MAIN();

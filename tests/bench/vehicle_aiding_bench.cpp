@@ -73,5 +73,3 @@ BENCHMARK_CAPTURE(run, barometer, [](const Ekf& filter) {
 
 }  // namespace
 }  // namespace leeway
-
-BENCHMARK_MAIN();
