@@ -76,6 +76,28 @@ TEST_CASE("the default variant errs as a campaign of the scene's own filter does
   CHECK(accuracy.r95_m <= accuracy.figures.worst_horizontal_m);
 }
 
+TEST_CASE("every kernel runs the invariant EKF, which errs as the plain one from a good start") {
+  const Scene scene = loop_scene(ImuClass::kTactical, 120.0, 10.0, 3);
+  std::vector<Variant> variants{Variant{}};
+  for (const KernelForm kernel :
+       {KernelForm::kDense, KernelForm::kSymmetric, KernelForm::kUd, KernelForm::kSquareRoot}) {
+    variants.push_back({.estimator = Estimator::kInvariantEkf, .kernel = kernel});
+  }
+  const auto accuracies = accuracy_of(variants, scene);
+  const double plain_m = accuracies[0].figures.rms_horizontal_m;
+  const CampaignResult& invariant = accuracies[1].figures;
+  // Half a turn of the correction: percents of sigma at most. Not the same, or it was not chosen.
+  CHECK(near(invariant.rms_horizontal_m, plain_m, 0.02 * plain_m));
+  CHECK(invariant.rms_horizontal_m != plain_m);
+  for (const Accuracy& a : accuracies) {
+    CHECK(a.has_claim);
+    CHECK(consistency_of(a) != Consistency::kDiverged);
+    if (&a == &accuracies[0]) continue;
+    // The kernels differ by rounding.
+    CHECK(near(a.figures.rms_horizontal_m, invariant.rms_horizontal_m, 1e-6));
+  }
+}
+
 TEST_CASE("same seeds, same bits of accuracy, on any number of threads") {
   const Scene scene = loop_scene(ImuClass::kTactical, 60.0, 10.0, 4);
   const auto variants = sensible_variants({5});
