@@ -119,10 +119,7 @@ class Archive {
   void visit(Event& s) { (*this)(s.time, s.data, s.counts, s.done, s.verdict); }
   void visit(Step& s) { (*this)(s.inc, s.is_gap); }
   void visit(VehicleState& s) { (*this)(s.value, s.P, s.cross, s.random_walk_per_s); }
-  void visit(Transition& s) {
-    (*this)(s.dt_s, s.psi_psi, s.psi_g, s.v_psi, s.v_v, s.v_r, s.v_a, s.v_g, s.r_psi, s.r_v, s.r_r,
-            s.r_a, s.r_g, s.a_a, s.g_g);
-  }
+  void visit(Transition& s) { (*this)(s.dt_s, s.psi, s.v, s.r, s.a_a, s.g_g); }
   void visit(ImuHistory& s) {
     (*this)(s.recent, s.count, s.pair_open, s.coning_b_rad, s.sculling_b_mps, s.dv_e_mps, s.first,
             s.last);

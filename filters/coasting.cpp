@@ -51,10 +51,7 @@ Coasting first_step(const SteadyMotion& motion, double dt_s) {
   Transition& Phi = step.Phi;
   advance(Phi, dynamics);
   const Eigen::Matrix3d C_le = exp_rotation(-turn_rad);
-  for (Eigen::Matrix3d* block : {&Phi.psi_psi, &Phi.psi_g, &Phi.v_psi, &Phi.v_v, &Phi.v_r, &Phi.v_a,
-                                 &Phi.v_g, &Phi.r_psi, &Phi.r_v, &Phi.r_r, &Phi.r_a, &Phi.r_g}) {
-    *block = C_le * *block;
-  }
+  for (Transition::Rows* rows : {&Phi.psi, &Phi.v, &Phi.r}) *rows = C_le * (*rows).eval();
   propagate(step.Q, Phi, motion.noise);
   return step;
 }
@@ -73,17 +70,18 @@ Coasting started_later(const Coasting& next, const SteadyMotion& motion, double 
   const Eigen::Matrix3d first_v = first * first;  // Coriolis: twice the rate
   const Eigen::Matrix3d last_v = last * last;
   Transition& Phi = result.Phi;
-  Phi.psi_psi = last * Phi.psi_psi * first;
-  Phi.psi_g = last * Phi.psi_g;
-  Phi.v_psi = last_v * Phi.v_psi * first;
-  Phi.v_v = last_v * Phi.v_v * first_v;
-  Phi.v_r = last_v * Phi.v_r;
-  Phi.v_a = last_v * Phi.v_a;
-  Phi.v_g = last_v * Phi.v_g;
+  const auto turn_columns = [](Transition::Rows& rows, int of, const Eigen::Matrix3d& turn) {
+    rows.middleCols<3>(of) = (rows.middleCols<3>(of) * turn).eval();
+  };
+  Phi.psi = last * Phi.psi.eval();
+  turn_columns(Phi.psi, kPsi, first);
+  Phi.v = last_v * Phi.v.eval();
+  turn_columns(Phi.v, kPsi, first);
+  turn_columns(Phi.v, kDv, first_v);
   // What turns at a steady rate through the step moves r, which grows with the square of the time
   // left, by a third, where all of it at the start would move it by one: not by a half.
-  Phi.r_psi = Phi.r_psi * exp_rotation(-2.0 / 3.0 * first_rad);
-  Phi.r_v = Phi.r_v * first_v;
+  turn_columns(Phi.r, kPsi, exp_rotation(-2.0 / 3.0 * first_rad));
+  turn_columns(Phi.r, kDv, first_v);
   return result;
 }
 

@@ -9,15 +9,6 @@
 namespace leeway {
 namespace {
 
-using MotionRows = Eigen::Matrix<double, 6, kErrorStates>;  // of velocity and position
-
-MotionRows motion_rows(const Transition& Phi) {
-  MotionRows M;
-  M << Phi.v_psi, Phi.v_v, Phi.v_r, Phi.v_a, Phi.v_g,  //
-      Phi.r_psi, Phi.r_v, Phi.r_r, Phi.r_a, Phi.r_g;
-  return M;
-}
-
 template <int N>
 double scalar_update_of(Eigen::Matrix<double, N, N>& P, Eigen::Matrix<double, N, 1>& x_hat,
                         const Eigen::Matrix<double, N, 1>& h, double z) {
@@ -71,9 +62,9 @@ void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T) {
 
 VehicleCross transported(const Transition& Phi, const VehicleCross& C) {
   VehicleCross result;
-  result.middleRows<3>(kPsi) =
-      Phi.psi_psi * C.middleRows<3>(kPsi) + Phi.psi_g * C.middleRows<3>(kBg);
-  result.middleRows<6>(kDv) = motion_rows(Phi) * C;
+  result.middleRows<3>(kPsi) = Phi.psi.leftCols<kErrorStates>() * C;
+  result.middleRows<3>(kDv) = Phi.v.leftCols<kErrorStates>() * C;
+  result.middleRows<3>(kDr) = Phi.r.leftCols<kErrorStates>() * C;
   result.middleRows<3>(kBa) = Phi.a_a * C.middleRows<3>(kBa);
   result.middleRows<3>(kBg) = Phi.g_g * C.middleRows<3>(kBg);
   return result;

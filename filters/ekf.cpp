@@ -193,7 +193,7 @@ void Ekf::coast(Time to) {
   estimate_.nav.r_e_m += dt_s * estimate_.nav.v_e_mps;
   estimate_.nav.time = to;
   Phi_.dt_s = dt_s;
-  Phi_.r_v = dt_s * Eigen::Matrix3d::Identity();
+  Phi_.r.middleCols<3>(kDv) = dt_s * Eigen::Matrix3d::Identity();
   flush();
   const double turn_rad = std::min(kCoastTurnRadps * dt_s, kCoastMaxTurnRad);
   const double tilt_rad = std::min(turn_rad, kCoastTiltRad);

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "lanes.hpp"
-#include "leeway/earth.hpp"
 #include "measurement_update.hpp"
+#include "step_rows.hpp"
 #include "symmetric_propagation.hpp"
 
 namespace leeway {
@@ -15,122 +15,46 @@ using lanes::VectorOf;
 
 using lanes::unrolled;
 
-/// sum += row of a block * lanes from `first` on.
-template <int first, class Scalar, class Block>
-[[gnu::always_inline]] inline void add_product(const Block& block, int row,
-                                               const lanes::Column<Scalar>& in,
-                                               VectorOf<Scalar>& sum) {
-  unrolled<3>([&](auto k) __attribute__((always_inline)) {
-    sum += static_cast<Scalar>(block(row, int{k})) * in[first + k];
-  });
-}
-
-/// Rows of a Phi known by its blocks.
+/// Rows of a Phi that was formed.
 template <class Scalar>
-class BlockRows {
+class TransitionRows {
  public:
   using Column = lanes::Column<Scalar>;
-  explicit BlockRows(const Transition& Phi) : Phi_(Phi) {}
+  explicit TransitionRows(const Transition& Phi) : Phi_(Phi) {}
 
   [[gnu::always_inline]] void attitude(const Column& in, Column& out) const {
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
       VectorOf<Scalar> sum{};
-      add_product<kPsi, Scalar>(Phi_.psi_psi, i, in, sum);
-      add_product<kBg, Scalar>(Phi_.psi_g, i, in, sum);
+      unrolled<3>([&](auto k) __attribute__((always_inline)) {
+        sum += static_cast<Scalar>(Phi_.psi(int{i}, kPsi + k)) * in[kPsi + k];
+        sum += static_cast<Scalar>(Phi_.psi(int{i}, kBg + k)) * in[kBg + k];
+      });
       out[kPsi + i] = sum;
     });
   }
 
   [[gnu::always_inline]] void velocity(const Column& in, Column& out) const {
-    motion<kDv>(Phi_.v_psi, Phi_.v_v, Phi_.v_r, Phi_.v_a, Phi_.v_g, in, out);
+    motion<kDv>(Phi_.v, in, out);
   }
 
   [[gnu::always_inline]] void position(const Column& in, Column& out) const {
-    motion<kDr>(Phi_.r_psi, Phi_.r_v, Phi_.r_r, Phi_.r_a, Phi_.r_g, in, out);
+    motion<kDr>(Phi_.r, in, out);
   }
 
  private:
-  using Block = Eigen::Matrix3d;
-
   template <int row>
-  [[gnu::always_inline]] static void motion(const Block& psi, const Block& v, const Block& r,
-                                            const Block& a, const Block& g, const Column& in,
+  [[gnu::always_inline]] static void motion(const Transition::Rows& rows, const Column& in,
                                             Column& out) {
     unrolled<3>([&](auto i) __attribute__((always_inline)) {
       VectorOf<Scalar> sum{};
-      add_product<kPsi, Scalar>(psi, i, in, sum);
-      add_product<kDv, Scalar>(v, i, in, sum);
-      add_product<kDr, Scalar>(r, i, in, sum);
-      add_product<kBa, Scalar>(a, i, in, sum);
-      add_product<kBg, Scalar>(g, i, in, sum);
+      unrolled<kErrorStates>([&](auto k) __attribute__((always_inline)) {
+        sum += static_cast<Scalar>(rows(int{i}, int{k})) * in[k];
+      });
       out[row + i] = sum;
     });
   }
 
   const Transition& Phi_;
-};
-
-/// Rows of the Phi of one increment, as advance() has them act: Groves (2013) (14.18)-(14.21).
-template <class Scalar>
-class StepRows {
- public:
-  using Column = lanes::Column<Scalar>;
-
-  StepRows(const ErrorDynamics& step, double a_a, double g_g)
-      : turn_(static_cast<Scalar>(step.dt_s * wgs84::kRotationRateRadps)),
-        half_dt_(static_cast<Scalar>(0.5 * step.dt_s)),
-        half_push_((-0.5 * step.dv_f_e_mps).cast<Scalar>()),
-        by_a_((-0.5 * (1.0 + a_a) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
-        by_g_((-0.5 * (1.0 + g_g) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
-        by_r_((step.dt_s * step.gravity_gradient_e).cast<Scalar>()) {}
-
-  [[gnu::always_inline]] void attitude(const Column& in, Column& out) const {
-    unrolled<3>([&](auto i) __attribute__((always_inline)) {
-      out[kPsi + i] = in[kPsi + i];
-      add_product<kBg, Scalar>(by_g_, i, in, out[kPsi + i]);
-    });
-    out[kPsi] += turn_ * in[kPsi + 1];
-    out[kPsi + 1] -= turn_ * in[kPsi];
-  }
-
-  [[gnu::always_inline]] void velocity(const Column& in, Column& out) const {
-    Column both;  // the sum of before and after: twice the mean
-    Column middle;
-    unrolled<3>([&](auto i) __attribute__((always_inline)) {
-      both[kPsi + i] = in[kPsi + i] + out[kPsi + i];
-      middle[kDr + i] = in[kDr + i] + half_dt_ * in[kDv + i];
-    });
-    unrolled<3>([&](auto i) __attribute__((always_inline)) {
-      constexpr int kNext = (i + 1) % 3;
-      constexpr int kLast = (i + 2) % 3;
-      VectorOf<Scalar>& v = out[kDv + i];
-      v = in[kDv + i];
-      add_product<kBa, Scalar>(by_a_, i, in, v);
-      v += half_push_(kNext) * both[kPsi + kLast];
-      v -= half_push_(kLast) * both[kPsi + kNext];
-      both[kDv + i] = in[kDv + i] + v;
-      add_product<kDr, Scalar>(by_r_, i, middle, v);
-    });
-    // Coriolis by the mean of v before and after the push.
-    out[kDv] += turn_ * both[kDv + 1];
-    out[kDv + 1] -= turn_ * both[kDv];
-  }
-
-  [[gnu::always_inline]] void position(const Column& in, Column& out) const {
-    unrolled<3>([&](auto i) __attribute__((always_inline)) {
-      out[kDr + i] = in[kDr + i] + half_dt_ * in[kDv + i] + half_dt_ * out[kDv + i];
-    });
-  }
-
- private:
-  using Matrix3 = Eigen::Matrix<Scalar, 3, 3>;
-
-  Scalar turn_;
-  Scalar half_dt_;
-  Eigen::Matrix<Scalar, 3, 1> half_push_;
-  Matrix3 by_a_;
-  Matrix3 by_g_;
-  Matrix3 by_r_;
 };
 
 template <class Scalar>
@@ -149,7 +73,7 @@ lanes::Diagonal<Scalar> diagonal_of(const ProcessNoise& noise, double dt_s, doub
 template <class Scalar, int N>
 void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Transition& Phi,
                          const ProcessNoise& noise) {
-  lanes::propagate_symmetric<Scalar, N>(P, BlockRows<Scalar>(Phi),
+  lanes::propagate_symmetric<Scalar, N>(P, TransitionRows<Scalar>(Phi),
                                         diagonal_of<Scalar>(noise, Phi.dt_s, Phi.a_a, Phi.g_g));
 }
 
@@ -158,7 +82,7 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& st
                          const ProcessNoise& noise) {
   const double a_a = bias_decay(step.dt_s, step.tau_a_s);
   const double g_g = bias_decay(step.dt_s, step.tau_g_s);
-  lanes::propagate_symmetric<Scalar, N>(P, StepRows<Scalar>(step, a_a, g_g),
+  lanes::propagate_symmetric<Scalar, N>(P, lanes::StepRows<Scalar>(step, a_a, g_g),
                                         diagonal_of<Scalar>(noise, step.dt_s, a_a, g_g));
 }
 

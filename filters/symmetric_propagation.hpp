@@ -7,14 +7,11 @@
 #include "lanes.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
 #include "leeway/filters/error_state.hpp"
+#include "step_rows.hpp"
 
 namespace leeway::lanes {
 
 inline constexpr int kMotionStates = kBa;  // attitude, velocity, position: what Phi mixes
-
-/// What a column of P was before, or is after.
-template <class Scalar>
-using Column = Array<VectorOf<Scalar>, kErrorStates + 1>;
 
 /// The part of the diagonal noise that is added on each side, and what the biases are scaled by.
 /// Single numbers, not lanes: a load of lanes just stored one by one would wait for the stores.

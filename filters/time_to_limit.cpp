@@ -118,9 +118,7 @@ int Outlook::copies(double step_s) const {
 Eigen::Matrix2d Outlook::after(const Coasting& step, double end_s) const {
   const Transition& Phi = step.Phi;
   const auto C_ne_e = C_e_ne_.transpose();
-  Eigen::Matrix<double, 2, kErrorStates> rows;
-  rows << C_ne_e * Phi.r_psi, C_ne_e * Phi.r_v, C_ne_e * Phi.r_r, C_ne_e * Phi.r_a,
-      C_ne_e * Phi.r_g;
+  const Eigen::Matrix<double, 2, kErrorStates> rows = C_ne_e * Phi.r.leftCols<kErrorStates>();
   const Eigen::Matrix<double, 2, kErrorStates> rows_P = rows.lazyProduct(P_);
   const Eigen::Matrix2d P_l =
       rows_P.lazyProduct(rows.transpose()) + C_ne_e * step.Q.block<3, 3>(kDr, kDr) * C_e_ne_;

@@ -45,23 +45,15 @@ void add_scaled(Array<Scalar, kWeightedColumns>& a, Scalar factor,
 /// Phi x.
 template <class Scalar>
 CovarianceVector<Scalar> transported(const Transition& Phi, const CovarianceVector<Scalar>& x) {
-  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  const Vector3 psi = x.template segment<3>(kPsi);
-  const Vector3 v = x.template segment<3>(kDv);
-  const Vector3 r = x.template segment<3>(kDr);
-  const Vector3 a = x.template segment<3>(kBa);
-  const Vector3 g = x.template segment<3>(kBg);
-  const auto times = [](const Eigen::Matrix3d& block, const Vector3& y) {
-    return Vector3(block.cast<Scalar>() * y);
+  const auto times = [&x](const Transition::Rows& rows) {
+    return rows.template leftCols<kErrorStates>().template cast<Scalar>() * x;
   };
   CovarianceVector<Scalar> result;
-  result.template segment<3>(kPsi) = times(Phi.psi_psi, psi) + times(Phi.psi_g, g);
-  result.template segment<3>(kDv) = times(Phi.v_psi, psi) + times(Phi.v_v, v) + times(Phi.v_r, r) +
-                                    times(Phi.v_a, a) + times(Phi.v_g, g);
-  result.template segment<3>(kDr) = times(Phi.r_psi, psi) + times(Phi.r_v, v) + times(Phi.r_r, r) +
-                                    times(Phi.r_a, a) + times(Phi.r_g, g);
-  result.template segment<3>(kBa) = static_cast<Scalar>(Phi.a_a) * a;
-  result.template segment<3>(kBg) = static_cast<Scalar>(Phi.g_g) * g;
+  result.template segment<3>(kPsi) = times(Phi.psi);
+  result.template segment<3>(kDv) = times(Phi.v);
+  result.template segment<3>(kDr) = times(Phi.r);
+  result.template segment<3>(kBa) = static_cast<Scalar>(Phi.a_a) * x.template segment<3>(kBa);
+  result.template segment<3>(kBg) = static_cast<Scalar>(Phi.g_g) * x.template segment<3>(kBg);
   return result;
 }
 

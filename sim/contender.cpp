@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "leeway/filters/dense_kernel.hpp"
+#include "leeway/filters/invariant_ekf.hpp"
 #include "leeway/filters/kernel_ekf.hpp"
 #include "leeway/filters/reset_filter.hpp"
 #include "leeway/filters/square_root_kernel.hpp"
@@ -52,13 +53,14 @@ std::unique_ptr<Contender> running(Filter filter) {
 
 using Factory = std::unique_ptr<Contender> (*)(const EkfConfig&, UpdateForm, const TrialStart&);
 
-template <class Kernel>
+template <class Kernel, class Error>
 std::unique_ptr<Contender> make_ekf(const EkfConfig& config, UpdateForm form,
                                     const TrialStart& start) {
+  using Filter = KernelEkf<Kernel, Error>;
   if constexpr (std::constructible_from<Kernel, const ErrorMatrix&, UpdateForm>) {
-    return running(KernelEkf(config, start.estimate, Kernel(start.P, form)));
+    return running(Filter(config, start.estimate, Kernel(start.P, form)));
   } else {
-    return running(KernelEkf(config, start.estimate, Kernel(start.P)));
+    return running(Filter(config, start.estimate, Kernel(start.P)));
   }
 }
 
@@ -68,15 +70,16 @@ struct Entry {
   Factory make;
 };
 
+template <class Error>
 constexpr std::array kEkfs{
-    Entry{KernelForm::kDense, Precision::kFloat, make_ekf<DenseKernel<float>>},
-    Entry{KernelForm::kDense, Precision::kDouble, make_ekf<DenseKernel<double>>},
-    Entry{KernelForm::kSymmetric, Precision::kFloat, make_ekf<SymmetricKernel<float>>},
-    Entry{KernelForm::kSymmetric, Precision::kDouble, make_ekf<SymmetricKernel<double>>},
-    Entry{KernelForm::kUd, Precision::kFloat, make_ekf<UdKernel<float>>},
-    Entry{KernelForm::kUd, Precision::kDouble, make_ekf<UdKernel<double>>},
-    Entry{KernelForm::kSquareRoot, Precision::kFloat, make_ekf<SquareRootKernel<float>>},
-    Entry{KernelForm::kSquareRoot, Precision::kDouble, make_ekf<SquareRootKernel<double>>}};
+    Entry{KernelForm::kDense, Precision::kFloat, make_ekf<DenseKernel<float>, Error>},
+    Entry{KernelForm::kDense, Precision::kDouble, make_ekf<DenseKernel<double>, Error>},
+    Entry{KernelForm::kSymmetric, Precision::kFloat, make_ekf<SymmetricKernel<float>, Error>},
+    Entry{KernelForm::kSymmetric, Precision::kDouble, make_ekf<SymmetricKernel<double>, Error>},
+    Entry{KernelForm::kUd, Precision::kFloat, make_ekf<UdKernel<float>, Error>},
+    Entry{KernelForm::kUd, Precision::kDouble, make_ekf<UdKernel<double>, Error>},
+    Entry{KernelForm::kSquareRoot, Precision::kFloat, make_ekf<SquareRootKernel<float>, Error>},
+    Entry{KernelForm::kSquareRoot, Precision::kDouble, make_ekf<SquareRootKernel<double>, Error>}};
 
 }  // namespace
 
@@ -86,7 +89,9 @@ std::unique_ptr<Contender> make_contender(const Variant& variant, const EkfConfi
   config.strapdown = variant.strapdown;
   config.covariance_interval_s = variant.covariance_interval_s;
   if (variant.estimator == Estimator::kReset) return running(ResetFilter(config, start.estimate));
-  const auto* entry = std::find_if(kEkfs.begin(), kEkfs.end(), [&variant](const Entry& e) {
+  const bool is_invariant = variant.estimator == Estimator::kInvariantEkf;
+  const auto& ekfs = is_invariant ? kEkfs<InvariantError> : kEkfs<AdditiveError>;
+  const auto* entry = std::find_if(ekfs.begin(), ekfs.end(), [&variant](const Entry& e) {
     return e.kernel == variant.kernel && e.precision == variant.precision;
   });
   return entry->make(config, variant.update, start);

@@ -53,11 +53,13 @@ std::string_view word(UpdateForm form) {
   return kWords[static_cast<std::size_t>(form)];
 }
 
-std::string covariance_name(const Variant& v) {
+std::string estimator_name(const Variant& v) {
+  if (v.estimator == Estimator::kReset) return "reset";
+  const std::string error = v.estimator == Estimator::kInvariantEkf ? "invariant/" : "";
   const std::string form = has_update_forms(v.kernel) ? fmt::format("{}/", word(v.update)) : "";
   const std::string interval =
       v.covariance_interval_s == 0.0 ? "each" : fmt::format("{:g}s", v.covariance_interval_s);
-  return fmt::format("{}/{}{}/{}", word(v.kernel), form, word(v.precision), interval);
+  return fmt::format("{}{}/{}{}/{}", error, word(v.kernel), form, word(v.precision), interval);
 }
 
 }  // namespace
@@ -68,8 +70,7 @@ bool has_update_forms(KernelForm kernel) {
 
 std::string name(const Variant& v, double imu_rate_hz) {
   return fmt::format("{}/{}/{}/{:g}Hz {}", word(v.strapdown.scheme), word(v.strapdown.gravity),
-                     word(v.strapdown.rotation), imu_rate_hz / v.imu_divider,
-                     v.estimator == Estimator::kReset ? "reset" : covariance_name(v));
+                     word(v.strapdown.rotation), imu_rate_hz / v.imu_divider, estimator_name(v));
 }
 
 std::vector<Variant> strapdown_variants(const std::vector<int>& imu_dividers) {
@@ -104,6 +105,18 @@ std::vector<Variant> covariance_variants() {
   return variants;
 }
 
+std::vector<Variant> invariant_variants(const std::vector<int>& imu_dividers) {
+  std::vector<Variant> variants;
+  for (const int divider : imu_dividers) {
+    for (const double interval_s : kIntervalsS) {
+      variants.push_back({.estimator = Estimator::kInvariantEkf,
+                          .imu_divider = divider,
+                          .covariance_interval_s = interval_s});
+    }
+  }
+  return variants;
+}
+
 std::vector<Variant> reset_variants(const std::vector<int>& imu_dividers) {
   constexpr StrapdownPolicy kCheapest{Scheme::kExplicitEuler, GravityModel::kConstant,
                                       EarthRotation::kOff};
@@ -120,8 +133,8 @@ std::vector<Variant> reset_variants(const std::vector<int>& imu_dividers) {
 std::vector<Variant> sensible_variants(const std::vector<int>& imu_dividers) {
   std::vector<Variant> variants;
   std::set<std::string> names;
-  for (const auto& list :
-       {strapdown_variants(imu_dividers), covariance_variants(), reset_variants(imu_dividers)}) {
+  for (const auto& list : {strapdown_variants(imu_dividers), covariance_variants(),
+                           invariant_variants(imu_dividers), reset_variants(imu_dividers)}) {
     for (const Variant& variant : list) {
       if (names.insert(name(variant, 1.0)).second) variants.push_back(variant);
     }

@@ -8,7 +8,9 @@
 #include "filters/recording.hpp"
 #include "leeway/filters/heading_bank.hpp"
 #include "leeway/filters/horizontal.hpp"
+#include "leeway/filters/invariant_ekf.hpp"
 #include "leeway/filters/navigator.hpp"
+#include "leeway/filters/symmetric_kernel.hpp"
 #include "leeway/filters/time_to_limit.hpp"
 #include "support/allocation_counter.hpp"
 
@@ -52,6 +54,21 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
       CHECK(fused == 2);
       CHECK(s.nav.time == fix.time);
     }
+  }
+  SUBCASE("the invariant filter: predict, update, covariance") {
+    InvariantEkf<SymmetricKernel<double>> filter(config, start, SymmetricKernel<double>(P));
+    const test::AllocationCounter guard;
+    std::size_t next = 0;
+    double sum_rad2 = 0.0;
+    for (const ImuIncrement& inc : log.imu) {
+      filter.predict(inc);
+      if (next == log.fixes.size() || log.fixes[next].time != inc.time) continue;
+      filter.update(log.fixes[next++]);
+      sum_rad2 += filter.covariance()(kPsi, kPsi);
+    }
+    CHECK(guard.count() == 0);
+    CHECK(next > 10);
+    CHECK(sum_rad2 > 0.0);
   }
   SUBCASE("leeway, by every metric, short and long, straight and turning") {
     const Ekf turning = [&] {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "filters/carried.hpp"
 #include "filters/random_state.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/trajectories.hpp"
@@ -16,6 +17,8 @@
 namespace leeway {
 namespace {
 
+using test::accumulated;
+using test::carry;
 using test::near;
 using test::random_estimate;
 using test::random_vector;
@@ -23,24 +26,6 @@ using test::random_vector;
 using test::kInf;
 constexpr double kTauA = 5.0;
 constexpr double kTauG = 8.0;
-
-/// The nonlinear model: the estimate, biases included, carried along what the sensors measured. A
-/// bias decays exponentially; its integral is taken out of the increment.
-void carry(Estimate& estimate, const std::vector<ImuIncrement>& measured, double tau_a_s,
-           double tau_g_s) {
-  ImuHistory history;
-  const auto decay = [](Eigen::Vector3d& bias, double dt_s, double tau_s) -> Eigen::Vector3d {
-    if (std::isinf(tau_s)) return dt_s * bias;
-    const Eigen::Vector3d integral = -std::expm1(-dt_s / tau_s) * tau_s * bias;
-    bias *= std::exp(-dt_s / tau_s);
-    return integral;
-  };
-  for (ImuIncrement inc : measured) {
-    inc.dv_b_mps -= decay(estimate.bias.b_a_mps2, inc.dt_s, tau_a_s);
-    inc.dtheta_b_rad -= decay(estimate.bias.b_g_radps, inc.dt_s, tau_g_s);
-    strapdown_step<Scheme::kRungeKutta4>(estimate.nav, inc, history);
-  }
-}
 
 /// d (error at the end) / d (error at the start) through the nonlinear model.
 ErrorMatrix numeric_transition(const Estimate& start, const std::vector<ImuIncrement>& measured,
@@ -64,22 +49,6 @@ std::vector<ImuIncrement> constant_motion(Time from, const Eigen::Vector3d& omeg
         {from + k * duration_from_seconds(dt_s), dt_s, dt_s * omega_b_radps, dt_s * f_b_mps2});
   }
   return increments;
-}
-
-/// Phi as the filter accumulates it.
-Transition accumulated(NavState state, const std::vector<ImuIncrement>& increments) {
-  Transition Phi;
-  ImuHistory history;
-  for (const ImuIncrement& inc : increments) {
-    ErrorDynamics dynamics;
-    dynamics.dt_s = inc.dt_s;
-    dynamics.gravity_gradient_e = gravity_gradient_e(state.r_e_m);
-    const StrapdownStep step = strapdown_step<>(state, inc, history);
-    dynamics.C_eb_mean = step.C_eb_mean;
-    dynamics.dv_f_e_mps = step.dv_f_e_mps;
-    advance(Phi, dynamics);
-  }
-  return Phi;
 }
 
 ErrorDynamics random_dynamics(std::uint64_t seed) {
@@ -257,13 +226,13 @@ TEST_CASE("a transition frozen at the fix overstates a bias on a circle; advance
     d.gravity_gradient_e = gravity_gradient_e(start.nav.r_e_m);
     for (std::size_t k = 0; k < increments.size(); ++k) advance(frozen, d);
 
-    const double right_m = Phi.r_a.col(0).norm();
+    const double right_m = Phi.r.col(kBa).norm();
     const double angle = omega_radps * c.duration_s;
     const double closed_m =
         std::hypot(std::cos(angle) - 1.0, std::sin(angle) - angle) / (omega_radps * omega_radps);
     // The closed form knows neither gravity gradient nor Coriolis: (t / 800 s)^2 of it at most.
     CHECK(near(right_m / closed_m, 1.0, 0.01));
-    CHECK(near(frozen.r_a.col(0).norm() / right_m, c.overstated, 0.04 * c.overstated));
+    CHECK(near(frozen.r.col(kBa).norm() / right_m, c.overstated, 0.04 * c.overstated));
 
     const auto fine = sim::true_increments(trajectory, 200.0, c.duration_s);
     Estimate unbiased = start;
@@ -272,7 +241,7 @@ TEST_CASE("a transition frozen at the fix overstates a bias on a circle; advance
     carry(unbiased, fine, kInf, kInf);
     carry(biased, fine, kInf, kInf);
     const Eigen::Vector3d moved_m = biased.nav.r_e_m - unbiased.nav.r_e_m;
-    CHECK(near(moved_m, 0.01 * Phi.r_a.col(0), 1e-5 * moved_m.norm()));
+    CHECK(near(moved_m, 0.01 * Phi.r.col(kBa), 1e-5 * moved_m.norm()));
   }
 }
 

@@ -76,6 +76,29 @@ TEST_CASE("the default variant errs as a campaign of the scene's own filter does
   CHECK(accuracy.r95_m <= accuracy.figures.worst_horizontal_m);
 }
 
+TEST_CASE(
+    "every kernel runs the invariant EKF, which errs as the plain one with fixes every second") {
+  const Scene scene = loop_scene(ImuClass::kTactical, 120.0, 1.0, 3);
+  std::vector<Variant> variants{Variant{}};
+  for (const KernelForm kernel :
+       {KernelForm::kDense, KernelForm::kSymmetric, KernelForm::kUd, KernelForm::kSquareRoot}) {
+    variants.push_back({.estimator = Estimator::kInvariantEkf, .kernel = kernel});
+  }
+  const auto accuracies = accuracy_of(variants, scene);
+  const double plain_m = accuracies[0].figures.rms_horizontal_m;
+  const CampaignResult& invariant = accuracies[1].figures;
+  // Corrections are small, so the two differ by little; but they do, or it was not chosen.
+  CHECK(near(invariant.rms_horizontal_m, plain_m, 0.02 * plain_m));
+  CHECK(invariant.rms_horizontal_m != plain_m);
+  for (const Accuracy& a : accuracies) {
+    CHECK(a.has_claim);
+    CHECK(a.figures.diverged == 0);
+    if (&a == &accuracies[0]) continue;
+    // The kernels differ by rounding.
+    CHECK(near(a.figures.rms_horizontal_m, invariant.rms_horizontal_m, 1e-6));
+  }
+}
+
 TEST_CASE("same seeds, same bits of accuracy, on any number of threads") {
   const Scene scene = loop_scene(ImuClass::kTactical, 60.0, 10.0, 4);
   const auto variants = sensible_variants({5});
@@ -128,6 +151,26 @@ TEST_CASE("explicit Euler errs more than two-sample where there is motion" *
   const double two_sample_m = accuracies[1].figures.rms_horizontal_m;
   MESSAGE("RMS of explicit Euler " << euler_m << " m, of two-sample " << two_sample_m << " m");
   CHECK(euler_m > 1.1 * two_sample_m);
+}
+
+TEST_CASE(
+    "a heading 10 deg off and a whole turn between two fixes: the invariant EKF is the worse" *
+    doctest::test_suite("heavy")) {
+  // Why: docs/theory/invariant_ekf.md, "What it does not do".
+  Scene scene = loop_scene(ImuClass::kTactical, 120.0, 10.0, 60);
+  InitialSigma start = initial_sigma(scene);
+  start.heading_rad = 10.0 * kRadPerDeg;
+  scene.initial = start;
+  Variant invariant;
+  invariant.estimator = Estimator::kInvariantEkf;
+  const auto accuracies = accuracy_of({Variant{}, invariant}, scene);
+  const CampaignResult& plain = accuracies[0].figures;
+  const CampaignResult& other = accuracies[1].figures;
+  MESSAGE("RMS " << plain.rms_horizontal_m << " -> " << other.rms_horizontal_m << " m, diverged "
+                 << plain.diverged << " -> " << other.diverged << " of " << plain.trials);
+  CHECK(plain.diverged > 0);
+  CHECK(other.diverged > plain.diverged);
+  CHECK(other.rms_horizontal_m > plain.rms_horizontal_m);
 }
 
 TEST_CASE("compare: sorted, ranked, and combinations of survivors among them" *

@@ -12,8 +12,9 @@ namespace leeway::sim {
 TEST_CASE("every variant has a name of its own, without a comma, and a filter that runs it") {
   const auto variants = sensible_variants({1, 2, 5});
   // 6 schemes, 3 gravities, 2 rotations, 3 rates; 8 kernels and forms, 2 precisions, 3 intervals,
-  // of which the default is among the first; 2 policies of the reset at 3 rates.
-  CHECK(variants.size() == 108 + 48 - 1 + 6);
+  // of which the default is among the first; the invariant EKF at 3 rates and 3 intervals; 2
+  // policies of the reset at 3 rates.
+  CHECK(variants.size() == 108 + 48 - 1 + 9 + 6);
   std::set<std::string> names;
   TrialStart start;
   start.estimate.nav.r_e_m.x() = wgs84::kSemiMajorAxisM;
@@ -35,6 +36,8 @@ TEST_CASE("a name says what was chosen, and nothing that is not there") {
   ud.covariance_interval_s = 0.0;
   ud.imu_divider = 5;
   CHECK(name(ud, 50.0) == "two-sample/normal/turning/10Hz ud/float/each");
+  ud.estimator = Estimator::kInvariantEkf;
+  CHECK(name(ud, 50.0) == "two-sample/normal/turning/10Hz invariant/ud/float/each");
   ud.estimator = Estimator::kReset;
   ud.strapdown = {Scheme::kExplicitEuler, GravityModel::kConstant, EarthRotation::kOff};
   CHECK(name(ud, 50.0) == "explicit-euler/constant/still/10Hz reset");

@@ -11,9 +11,24 @@
 
 namespace leeway {
 
+/// The error of error_state.hpp as it stands: a correction is added.
+struct AdditiveError {
+  /// What inject() is to be given for the estimated error.
+  static ErrorVector correction(const ErrorVector& x_hat) { return x_hat; }
+
+  /// What the correction makes of the error that remains.
+  static Transition reset(const ErrorVector& x_hat) {
+    Transition Phi;
+    Phi.psi.middleCols<3>(kPsi) = reset_jacobian(x_hat);
+    return Phi;
+  }
+};
+
 /// Ekf without its gate, its monitors and the vehicle, on a covariance of any form. Allocates
 /// nothing after construction beyond what the kernel does, which is nothing.
-template <CovarianceKernel Kernel>
+/// @tparam Error  AdditiveError, or InvariantError (invariant_ekf.hpp): which error it is that P is
+/// of. They agree to first order.
+template <CovarianceKernel Kernel, class Error = AdditiveError>
 class KernelEkf {
  public:
   /// @param kernel  holds the covariance of the estimate
@@ -55,10 +70,10 @@ class KernelEkf {
     const WhiteMeasurement m = inertial_.white_measurement(fix, position_weight(fix.time));
     ErrorVector x_hat = ErrorVector::Zero();
     kernel_.update(x_hat, m.H, m.z);
-    inertial_.inject(x_hat);
+    inertial_.inject(Error::correction(x_hat));
     // The reset is the first factor of the next Phi: no kernel need know of it, and it costs none
     // a propagation.
-    Phi_.psi_psi = reset_jacobian(x_hat);
+    Phi_ = Error::reset(x_hat);
     is_flushed_ = false;
     if (fix.position) last_position_fix_ = fix.time;
   }

@@ -11,16 +11,22 @@
 
 namespace leeway {
 
-/// Phi over an interval. Blocks not named are zero; the bias blocks are scalars times identity.
-/// Rows: what changes; columns: because of what (a, g: the biases).
+/// Phi over an interval, by its rows: what changes, because of which of the 15 errors. Rows of the
+/// biases are scalars times identity. Attitude depends on attitude and gyro bias alone.
 struct Transition {
+  /// 3 x 16, the last column zero, so that vectors of 2, 4 or 8 numbers divide a row.
+  using Rows = Eigen::Matrix<double, 3, kErrorStates + 1, Eigen::RowMajor | Eigen::DontAlign>;
+
   double dt_s{0.0};
-  Eigen::Matrix3d psi_psi{Eigen::Matrix3d::Identity()}, psi_g{Eigen::Matrix3d::Zero()};
-  Eigen::Matrix3d v_psi{Eigen::Matrix3d::Zero()}, v_v{Eigen::Matrix3d::Identity()},
-      v_r{Eigen::Matrix3d::Zero()}, v_a{Eigen::Matrix3d::Zero()}, v_g{Eigen::Matrix3d::Zero()};
-  Eigen::Matrix3d r_psi{Eigen::Matrix3d::Zero()}, r_v{Eigen::Matrix3d::Zero()},
-      r_r{Eigen::Matrix3d::Identity()}, r_a{Eigen::Matrix3d::Zero()}, r_g{Eigen::Matrix3d::Zero()};
+  Rows psi{identity(kPsi)}, v{identity(kDv)}, r{identity(kDr)};
   double a_a{1.0}, g_g{1.0};
+
+  /// Of the identity, the rows of the three errors from `first` on.
+  static Rows identity(int first) {
+    Rows rows = Rows::Zero();
+    rows.middleCols<3>(first).setIdentity();
+    return rows;
+  }
 };
 
 /// What drives the error over one IMU increment.

@@ -71,14 +71,11 @@ template <int columns>
 Eigen::Matrix<double, kErrorStates, columns> times(
     const Transition& Phi, const Eigen::Matrix<double, kErrorStates, columns>& X) {
   Eigen::Matrix<double, kErrorStates, columns> Y;
-  const auto rows = [&X](int i) { return X.template middleRows<3>(i); };
-  Y.template middleRows<3>(kPsi) = Phi.psi_psi * rows(kPsi) + Phi.psi_g * rows(kBg);
-  Y.template middleRows<3>(kDv) = Phi.v_psi * rows(kPsi) + Phi.v_v * rows(kDv) +
-                                  Phi.v_r * rows(kDr) + Phi.v_a * rows(kBa) + Phi.v_g * rows(kBg);
-  Y.template middleRows<3>(kDr) = Phi.r_psi * rows(kPsi) + Phi.r_v * rows(kDv) +
-                                  Phi.r_r * rows(kDr) + Phi.r_a * rows(kBa) + Phi.r_g * rows(kBg);
-  Y.template middleRows<3>(kBa) = Phi.a_a * rows(kBa);
-  Y.template middleRows<3>(kBg) = Phi.g_g * rows(kBg);
+  Y.template middleRows<3>(kPsi) = Phi.psi.template leftCols<kErrorStates>() * X;
+  Y.template middleRows<3>(kDv) = Phi.v.template leftCols<kErrorStates>() * X;
+  Y.template middleRows<3>(kDr) = Phi.r.template leftCols<kErrorStates>() * X;
+  Y.template middleRows<3>(kBa) = Phi.a_a * X.template middleRows<3>(kBa);
+  Y.template middleRows<3>(kBg) = Phi.g_g * X.template middleRows<3>(kBg);
   return Y;
 }
 

@@ -11,15 +11,16 @@
 namespace leeway::sim {
 
 enum class Estimator {
-  kEkf,    ///< KernelEkf (default)
-  kReset,  ///< ResetFilter: the seed's separate scheme
+  kEkf,           ///< KernelEkf (default)
+  kInvariantEkf,  ///< InvariantEkf: the same on the error of SE_2(3)
+  kReset,         ///< ResetFilter: the seed's separate scheme
 };
 
 struct Variant {
   Estimator estimator{Estimator::kEkf};
   StrapdownPolicy strapdown{};
   int imu_divider{1};  ///< so many of the scene's increments are added to one
-  // Of the EKF:
+  // Of the EKFs:
   double covariance_interval_s{0.1};  ///< 0: at every increment
   KernelForm kernel{KernelForm::kSymmetric};
   Precision precision{Precision::kDouble};
@@ -40,10 +41,13 @@ std::vector<Variant> strapdown_variants(const std::vector<int>& imu_dividers);
 /// strapdown. Not long double, which no vehicle needs.
 std::vector<Variant> covariance_variants();
 
+/// The invariant EKF on the default strapdown and kernel, at every IMU rate and interval.
+std::vector<Variant> invariant_variants(const std::vector<int>& imu_dividers);
+
 /// The separate scheme on the default strapdown and on the cheapest, at every IMU rate.
 std::vector<Variant> reset_variants(const std::vector<int>& imu_dividers);
 
-/// The three lists above, each name once.
+/// The four lists above, each name once.
 std::vector<Variant> sensible_variants(const std::vector<int>& imu_dividers);
 
 /// The strapdown and IMU rate of the one with the covariance of the other.
