@@ -57,24 +57,15 @@ class TransitionRows {
   const Transition& Phi_;
 };
 
-template <class Scalar>
-lanes::Diagonal<Scalar> diagonal_of(const ProcessNoise& noise, double dt_s, double a_a,
-                                    double g_g) {
-  lanes::Diagonal<Scalar> diagonal;
-  const ErrorVector half_q = noise_variance(noise, 0.5 * dt_s);
-  for (int i = 0; i < kErrorStates; ++i) diagonal.noise[i] = static_cast<Scalar>(half_q(i));
-  diagonal.a_a = static_cast<Scalar>(a_a);
-  diagonal.g_g = static_cast<Scalar>(g_g);
-  return diagonal;
-}
-
 }  // namespace
 
 template <class Scalar, int N>
 void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Transition& Phi,
                          const ProcessNoise& noise) {
-  lanes::propagate_symmetric<Scalar, N>(P, TransitionRows<Scalar>(Phi),
-                                        diagonal_of<Scalar>(noise, Phi.dt_s, Phi.a_a, Phi.g_g));
+  lanes::propagate_symmetric<Scalar, N>(
+      P, TransitionRows<Scalar>(Phi),
+      {noise_variance(noise, 0.5 * Phi.dt_s), static_cast<Scalar>(Phi.a_a),
+       static_cast<Scalar>(Phi.g_g)});
 }
 
 template <class Scalar, int N>
@@ -82,8 +73,9 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& st
                          const ProcessNoise& noise) {
   const double a_a = bias_decay(step.dt_s, step.tau_a_s);
   const double g_g = bias_decay(step.dt_s, step.tau_g_s);
-  lanes::propagate_symmetric<Scalar, N>(P, lanes::StepRows<Scalar>(step, a_a, g_g),
-                                        diagonal_of<Scalar>(noise, step.dt_s, a_a, g_g));
+  lanes::propagate_symmetric<Scalar, N>(
+      P, lanes::StepRows<Scalar>(step, a_a, g_g),
+      {noise_variance(noise, 0.5 * step.dt_s), static_cast<Scalar>(a_a), static_cast<Scalar>(g_g)});
 }
 
 template <class Scalar>

@@ -17,10 +17,11 @@ inline constexpr int kMotionStates = kBa;  // attitude, velocity, position: what
 /// Single numbers, not lanes: a load of lanes just stored one by one would wait for the stores.
 template <class Scalar>
 struct Diagonal {
-  Array<Scalar, kErrorStates> noise;
+  ErrorVector noise;
   Scalar a_a;
   Scalar g_g;
 
+  Scalar noise_of(int i) const { return static_cast<Scalar>(noise(i)); }
   Scalar decay(int bias) const { return bias < kBg ? a_a : g_g; }
 
   /// For a block of rows from `start` on; means nothing for the motion's.
@@ -43,7 +44,7 @@ template <class Scalar, int N, class Rows>
     unrolled<kErrorStates>([&](auto k) __attribute__((always_inline)) {
       in[k] = load(P.data() + N * k + kStart);
       if constexpr (k >= kStart && k < kStart + kCount<Scalar>) {
-        in[k] += only<Scalar>(k - kStart, VectorOf<Scalar>{} + diagonal.noise[k]);
+        in[k] += only<Scalar>(k - kStart, VectorOf<Scalar>{} + diagonal.noise_of(k));
       }
     });
     Column<Scalar> out;
@@ -111,7 +112,7 @@ template <int first, int end, class Scalar, int N, class Rows>
 template <class Scalar, int N>
 void store_biases(Eigen::Matrix<Scalar, N, N>& P, const Diagonal<Scalar>& diagonal) {
   for (int j = kBa; j < kErrorStates; ++j) {
-    P(j, j) += diagonal.noise[j];
+    P(j, j) += diagonal.noise_of(j);
     if (diagonal.a_a == 1 && diagonal.g_g == 1) continue;
     for (int i = kBa; i < kErrorStates; ++i) P(i, j) *= diagonal.decay(i) * diagonal.decay(j);
   }
@@ -138,7 +139,7 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Rows& rows,
     for (int i = j + 1; i < kMotionStates; ++i) P(j, i) = P(i, j);
   }
   store_biases<Scalar, N>(P, diagonal);
-  for (int i = 0; i < kErrorStates; ++i) P(i, i) += diagonal.noise[i];
+  for (int i = 0; i < kErrorStates; ++i) P(i, i) += diagonal.noise_of(i);
 }
 
 }  // namespace leeway::lanes
