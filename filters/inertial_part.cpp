@@ -6,11 +6,12 @@
 namespace leeway {
 
 InertialPart::InertialPart(const EkfConfig& config, const Estimate& estimate)
-    : noise_(
-          Ekf(config, estimate, ErrorMatrix::Identity()).noise()),  // which refuses what is wrong
+    : noise_(process_noise(config.imu)),
       strapdown_step_(strapdown_function(config.strapdown)),
       lever_arm_b_m_(config.lever_arm_b_m),
-      estimate_(estimate) {}
+      estimate_(estimate) {
+  validate(config, estimate);
+}
 
 StrapdownStep InertialPart::advance(const ImuIncrement& inc) {
   ImuIncrement corrected = inc;
