@@ -138,10 +138,10 @@ void Ekf::predict(const ImuIncrement& inc) {
                                .C_eb_mean = step.C_eb_mean,
                                .dv_f_e_mps = step.dv_f_e_mps,
                                .gravity_gradient_e = gravity_gradient_e_,
-                               .tau_a_s = noise_.tau_a_s,
-                               .tau_g_s = noise_.tau_g_s};
-  estimate_.bias.b_a_mps2 *= bias_decay(inc.dt_s, noise_.tau_a_s);
-  estimate_.bias.b_g_radps *= bias_decay(inc.dt_s, noise_.tau_g_s);
+                               .a_a = bias_decay(inc.dt_s, noise_.tau_a_s),
+                               .g_g = bias_decay(inc.dt_s, noise_.tau_g_s)};
+  estimate_.bias.b_a_mps2 *= dynamics.a_a;
+  estimate_.bias.b_g_radps *= dynamics.g_g;
   if (config_.covariance_interval_s == 0.0 && Phi_.dt_s == 0.0 && !estimates_vehicle_) {
     propagate(P_, dynamics, noise_);  // Phi of the one increment need not be formed
     return;

@@ -55,8 +55,8 @@ double bias_decay(double dt_s, double tau_s) {
 
 void advance(Transition& Phi, const ErrorDynamics& step) {
   const double dt_s = step.dt_s;
-  const double a_a_end = Phi.a_a * bias_decay(dt_s, step.tau_a_s);
-  const double g_g_end = Phi.g_g * bias_decay(dt_s, step.tau_g_s);
+  const double a_a_end = Phi.a_a * step.a_a;
+  const double g_g_end = Phi.g_g * step.g_g;
   const Eigen::Matrix3d C_dt = dt_s * step.C_eb_mean;
 
   const Eigen::Matrix3d psi_psi_old = Phi.psi_psi;
