@@ -45,8 +45,8 @@ Coasting first_step(const SteadyMotion& motion, double dt_s) {
   dynamics.C_eb_mean = C_mean * motion.C_eb;
   dynamics.dv_f_e_mps = dt_s * (C_mean * motion.f_mps2);
   dynamics.gravity_gradient_e = motion.gravity_gradient_e;
-  dynamics.tau_a_s = motion.noise.tau_a_s;
-  dynamics.tau_g_s = motion.noise.tau_g_s;
+  dynamics.a_a = bias_decay(dt_s, motion.noise.tau_a_s);
+  dynamics.g_g = bias_decay(dt_s, motion.noise.tau_g_s);
   Coasting step;
   Transition& Phi = step.Phi;
   advance(Phi, dynamics);

@@ -39,7 +39,7 @@ void validate(const EkfConfig& config) {
   }
 }
 
-void validate(const Estimate& estimate, const ErrorMatrix& P) {
+void validate(const Estimate& estimate) {
   const NavState& nav = estimate.nav;
   if (!nav.v_e_mps.allFinite() || !nav.r_e_m.allFinite() || !nav.q_eb.coeffs().allFinite()) {
     throw Error("initial navigation state: every element must be finite");
@@ -52,6 +52,9 @@ void validate(const Estimate& estimate, const ErrorMatrix& P) {
     throw Error("initial r_e_m is " + std::to_string(nav.r_e_m.norm()) +
                 " m from the Earth's centre, must be above 6.3e6 m: ECEF coordinates are wanted");
   }
+}
+
+void validate(const ErrorMatrix& P) {
   if (!P.allFinite() || P.diagonal().minCoeff() < 0.0 ||
       (P - P.transpose()).cwiseAbs().maxCoeff() > 1e-9 * P.cwiseAbs().maxCoeff()) {
     throw Error("initial covariance: must be finite, symmetric, with no negative diagonal element");
@@ -140,14 +143,19 @@ double nis_of(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& S) {
 
 }  // namespace
 
+void validate(const EkfConfig& config, const Estimate& estimate) {
+  validate(config);
+  validate(estimate);
+}
+
 Ekf::Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P)
     : config_(config),
       noise_(process_noise(config.imu)),
       strapdown_step_(strapdown_function(config.strapdown)),
       estimate_(estimate),
       P_(P) {
-  validate(config);
-  validate(estimate, P);
+  validate(config, estimate);
+  validate(P);
   for (std::size_t dof = 1; dof < gate_.size(); ++dof) {
     gate_[dof] = config.gate_probability > 0.0
                      ? chi_square_threshold(config.gate_probability, static_cast<int>(dof))
@@ -174,10 +182,10 @@ void Ekf::predict(const ImuIncrement& inc) {
                                .C_eb_mean = step.C_eb_mean,
                                .dv_f_e_mps = step.dv_f_e_mps,
                                .gravity_gradient_e = gravity_gradient_e_,
-                               .tau_a_s = noise_.tau_a_s,
-                               .tau_g_s = noise_.tau_g_s};
-  estimate_.bias.b_a_mps2 *= bias_decay(inc.dt_s, noise_.tau_a_s);
-  estimate_.bias.b_g_radps *= bias_decay(inc.dt_s, noise_.tau_g_s);
+                               .a_a = bias_decay(inc.dt_s, noise_.tau_a_s),
+                               .g_g = bias_decay(inc.dt_s, noise_.tau_g_s)};
+  estimate_.bias.b_a_mps2 *= dynamics.a_a;
+  estimate_.bias.b_g_radps *= dynamics.g_g;
   if (config_.covariance_interval_s == 0.0 && Phi_.dt_s == 0.0 && !estimates_vehicle_) {
     propagate(P_, dynamics, noise_);  // Phi of the one increment need not be formed
     return;

@@ -6,21 +6,27 @@
 namespace leeway {
 
 InertialPart::InertialPart(const EkfConfig& config, const Estimate& estimate)
-    : noise_(
-          Ekf(config, estimate, ErrorMatrix::Identity()).noise()),  // which refuses what is wrong
+    : noise_(process_noise(config.imu)),
       strapdown_step_(strapdown_function(config.strapdown)),
       lever_arm_b_m_(config.lever_arm_b_m),
-      estimate_(estimate) {}
+      estimate_(estimate) {
+  validate(config, estimate);
+}
 
-StrapdownStep InertialPart::advance(const ImuIncrement& inc) {
+ErrorDynamics InertialPart::advance(const ImuIncrement& inc) {
   ImuIncrement corrected = inc;
   corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
   corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
   omega_ib_b_radps_ = 1.0 / inc.dt_s * inc.dtheta_b_rad;
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
-  estimate_.bias.b_a_mps2 *= bias_decay(inc.dt_s, noise_.tau_a_s);
-  estimate_.bias.b_g_radps *= bias_decay(inc.dt_s, noise_.tau_g_s);
-  return step;
+  const ErrorDynamics dynamics{.dt_s = inc.dt_s,
+                               .C_eb_mean = step.C_eb_mean,
+                               .dv_f_e_mps = step.dv_f_e_mps,
+                               .a_a = bias_decay(inc.dt_s, noise_.tau_a_s),
+                               .g_g = bias_decay(inc.dt_s, noise_.tau_g_s)};
+  estimate_.bias.b_a_mps2 *= dynamics.a_a;
+  estimate_.bias.b_g_radps *= dynamics.g_g;
+  return dynamics;
 }
 
 Measurement InertialPart::measurement(const GnssFix& fix) const {

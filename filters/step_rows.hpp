@@ -31,12 +31,12 @@ class StepRows {
  public:
   using Column = lanes::Column<Scalar>;
 
-  StepRows(const ErrorDynamics& step, double a_a, double g_g)
+  explicit StepRows(const ErrorDynamics& step)
       : turn_(static_cast<Scalar>(step.dt_s * wgs84::kRotationRateRadps)),
         half_dt_(static_cast<Scalar>(0.5 * step.dt_s)),
         half_push_((-0.5 * step.dv_f_e_mps).cast<Scalar>()),
-        by_a_((-0.5 * (1.0 + a_a) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
-        by_g_((-0.5 * (1.0 + g_g) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
+        by_a_((-0.5 * (1.0 + step.a_a) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
+        by_g_((-0.5 * (1.0 + step.g_g) * step.dt_s * step.C_eb_mean).cast<Scalar>()),
         by_r_((step.dt_s * step.gravity_gradient_e).cast<Scalar>()) {}
 
   [[gnu::always_inline]] void attitude(const Column& in, Column& out) const {

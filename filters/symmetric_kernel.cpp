@@ -71,11 +71,10 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const Transition& Phi,
 template <class Scalar, int N>
 void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& step,
                          const ProcessNoise& noise) {
-  const double a_a = bias_decay(step.dt_s, step.tau_a_s);
-  const double g_g = bias_decay(step.dt_s, step.tau_g_s);
   lanes::propagate_symmetric<Scalar, N>(
-      P, lanes::StepRows<Scalar>(step, a_a, g_g),
-      {noise_variance(noise, 0.5 * step.dt_s), static_cast<Scalar>(a_a), static_cast<Scalar>(g_g)});
+      P, lanes::StepRows<Scalar>(step),
+      {noise_variance(noise, 0.5 * step.dt_s), static_cast<Scalar>(step.a_a),
+       static_cast<Scalar>(step.g_g)});
 }
 
 template <class Scalar>

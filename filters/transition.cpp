@@ -17,9 +17,7 @@ void advance(Transition& Phi, const ErrorDynamics& step) {
   using lanes::load;
   using lanes::store;
   using lanes::unrolled;
-  const double a_a = bias_decay(step.dt_s, step.tau_a_s);
-  const double g_g = bias_decay(step.dt_s, step.tau_g_s);
-  const lanes::StepRows<double> rows(step, a_a, g_g);
+  const lanes::StepRows<double> rows(step);
   constexpr int kColumns = Transition::Rows::ColsAtCompileTime;
   unrolled<kColumns / kCount<double>>([&](auto block) __attribute__((always_inline)) {
     constexpr int kStart = block * kCount<double>;
@@ -44,8 +42,8 @@ void advance(Transition& Phi, const ErrorDynamics& step) {
       store<double>(&Phi.r(int{i}, kStart), out[kDr + i]);
     });
   });
-  Phi.a_a *= a_a;
-  Phi.g_g *= g_g;
+  Phi.a_a *= step.a_a;
+  Phi.g_g *= step.g_g;
   Phi.dt_s += step.dt_s;
 }
 

@@ -79,8 +79,8 @@ void ErrorTrack::extend(Leg& leg, const Piece& piece, double dt_s) const {
   dynamics.C_eb_mean = piece.C_eb;
   dynamics.dv_f_e_mps = dt_s * (piece.C_eb * piece.f_b_mps2);
   dynamics.gravity_gradient_e = piece.gravity_gradient_e;
-  dynamics.tau_a_s = config_.tau_a_s;
-  dynamics.tau_g_s = config_.tau_g_s;
+  dynamics.a_a = bias_decay(dt_s, config_.tau_a_s);
+  dynamics.g_g = bias_decay(dt_s, config_.tau_g_s);
   advance(leg.Phi, dynamics);
   if (!config_.parameters) return;
   Transition Phi;

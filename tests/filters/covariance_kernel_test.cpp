@@ -236,8 +236,7 @@ TEST_CASE("precise fixes on a vague prior, in double") {
 TEST_CASE("static and unaided: the vertical channel grows, float overflows, double does not") {
   // 24 h at 200 Hz is 17 million steps; with 1 s steps the same exponential growth takes 86400.
   // P_rr grows as exp(2 t sqrt(2 g / R)): 10^38, the end of float, after some hours.
-  ErrorDynamics step = random_dynamics(1, 1.0, 1e9);
-  step.tau_a_s = step.tau_g_s = std::numeric_limits<double>::infinity();
+  ErrorDynamics step = random_dynamics(1, 1.0, std::numeric_limits<double>::infinity());
   step.dv_f_e_mps = -9.8 * down_e_at(test::random_estimate(1).nav.r_e_m);
   Transition second;
   advance(second, step);
@@ -270,8 +269,7 @@ TEST_CASE("float loses the noise of single increments; ten a second keep it") {
   // Half of 5 ms of gyro noise is 2.5e-12 rad^2, below half a unit in the last place, 3.6e-12, of
   // the attitude's variance in float; half of 0.1 s is 7 units.
   const ErrorDynamics step = [] {
-    ErrorDynamics d = random_dynamics(1, 0.005, 1e9);
-    d.tau_a_s = d.tau_g_s = std::numeric_limits<double>::infinity();
+    ErrorDynamics d = random_dynamics(1, 0.005, std::numeric_limits<double>::infinity());
     d.dv_f_e_mps.setZero();
     return d;
   }();

@@ -30,24 +30,31 @@ using test::working_sigmas;
 
 /// Constant dynamics at a random place; the biases as given.
 struct Scene {
-  ErrorDynamics step{};
+  Eigen::Matrix3d C_eb{};
+  Eigen::Vector3d f_e_mps2{};
+  Eigen::Matrix3d gravity_gradient_e{};
   ErrorMatrix F{};
   ProcessNoise noise{};
+
+  ErrorDynamics step(double dt_s) const {
+    return {dt_s,
+            C_eb,
+            dt_s * f_e_mps2,
+            gravity_gradient_e,
+            bias_decay(dt_s, noise.tau_a_s),
+            bias_decay(dt_s, noise.tau_g_s)};
+  }
 };
 
 Scene random_scene(std::uint64_t seed) {
   sim::Random random(seed, 6);
   const Estimate e = random_estimate(seed);
-  const Eigen::Vector3d f_e_mps2 = random_vector(random, 20.0);
   Scene s;
   s.noise = {1e-6, 1e-4, 1e-5, 1e-9, 50.0, 80.0};
-  s.step.C_eb_mean = e.nav.q_eb.toRotationMatrix();
-  s.step.dv_f_e_mps = f_e_mps2;  // of one second
-  s.step.gravity_gradient_e = gravity_gradient_e(e.nav.r_e_m);
-  s.step.tau_a_s = s.noise.tau_a_s;
-  s.step.tau_g_s = s.noise.tau_g_s;
-  s.F = system_matrix(s.step.C_eb_mean, f_e_mps2, s.step.gravity_gradient_e, s.noise.tau_a_s,
-                      s.noise.tau_g_s);
+  s.C_eb = e.nav.q_eb.toRotationMatrix();
+  s.f_e_mps2 = random_vector(random, 20.0);
+  s.gravity_gradient_e = gravity_gradient_e(e.nav.r_e_m);
+  s.F = system_matrix(s.C_eb, s.f_e_mps2, s.gravity_gradient_e, s.noise.tau_a_s, s.noise.tau_g_s);
   return s;
 }
 
@@ -153,10 +160,7 @@ TEST_CASE("propagate is Phi (P + Q/2) Phi^T + Q/2 written out") {
     const Scene scene = random_scene(seed);
     Transition Phi;
     for (std::uint64_t k = 0; k < 10; ++k) {
-      Scene step = random_scene(seed + k);
-      step.step.dt_s = 0.01;
-      step.step.dv_f_e_mps *= 0.01;
-      advance(Phi, step.step);
+      advance(Phi, random_scene(seed + k).step(0.01));
     }
     ErrorMatrix P = random_covariance(seed);
     using Wide = Eigen::Matrix<long double, kErrorStates, kErrorStates>;
@@ -177,9 +181,7 @@ TEST_CASE("P of many steps is Van Loan's, with an error that falls as dt^2") {
     const Discrete exact = van_loan(scene, 1.0);
     const ErrorMatrix expected = exact.Phi * P_start * exact.Phi.transpose() + exact.Q;
     const auto error = [&](int steps) {
-      ErrorDynamics step = scene.step;
-      step.dt_s = 1.0 / steps;
-      step.dv_f_e_mps /= steps;
+      const ErrorDynamics step = scene.step(1.0 / steps);
       ErrorMatrix P = P_start;
       for (int k = 0; k < steps; ++k) {
         Transition Phi;
@@ -257,11 +259,8 @@ TEST_CASE("precise fixes on a vague prior leave P positive definite and accurate
   for (const Case& c : {Case{0.1, 1e-9}, Case{0.01, 1e-7}, Case{1e-4, 1e-3}}) {
     CAPTURE(c.sigma_m);
     const Scene scene = random_scene(1);
-    ErrorDynamics step = scene.step;
-    step.dt_s = 0.1;
-    step.dv_f_e_mps *= 0.1;
     Transition Phi;
-    advance(Phi, step);
+    advance(Phi, scene.step(0.1));
     const QuadMatrix Phi_quad = quad(dense(Phi));
     const QuadMatrix Phi_transposed = quad(dense(Phi).transpose());
     const ErrorMatrix half_Q = 0.5 * Phi.dt_s * noise_density(scene.noise);

@@ -352,27 +352,27 @@ TEST_CASE("a fix without numbers changes nothing") {
 
 namespace {
 
-constexpr double kRateHz = 50.0;
-constexpr double kDriveS = 200.0;
+constexpr double kCourseRateHz = 50.0;
+constexpr double kCourseS = 200.0;
 constexpr int kSeeds = 100;
 
 /// A trajectory with what its runs share.
 struct Course {
   std::string name;
   sim::Trajectory trajectory;
-  std::vector<ImuIncrement> increments{sim::true_increments(trajectory, kRateHz, kDriveS)};
+  std::vector<ImuIncrement> increments{sim::true_increments(trajectory, kCourseRateHz, kCourseS)};
 };
 
-struct Drive {
+struct CourseDrive {
   EkfConfig config{};
   Estimate start{};
   ErrorMatrix P{};
   test::Recording log{};
 };
 
-Drive drive_on(const Course& course, const ImuErrorModel& imu, const InitialSigma& sigma,
-               std::uint64_t seed) {
-  Drive drive;
+CourseDrive drive_on(const Course& course, const ImuErrorModel& imu, const InitialSigma& sigma,
+                     std::uint64_t seed) {
+  CourseDrive drive;
   drive.config.imu = imu;
   drive.config.gnss_correlation_s = 0.0;
   drive.config.lever_arm_b_m = {1.0, -0.5, -1.5};
@@ -416,7 +416,7 @@ template <class Filter>
 HeadingEnd heading_end(const Course& course, const ImuErrorModel& imu, double heading_rad,
                        std::uint64_t seed) {
   InitialSigma sigma{0.01, 1e-6, 0.05, 2.5};
-  Drive drive = drive_on(course, imu, sigma, seed);
+  CourseDrive drive = drive_on(course, imu, sigma, seed);
   const Eigen::Vector3d down_e = down_e_at(drive.start.nav.r_e_m);
   const double sign = seed % 2 == 0 ? 1.0 : -1.0;
   drive.start.nav.q_eb = exp_quaternion(sign * heading_rad * down_e) * drive.start.nav.q_eb;
@@ -470,10 +470,10 @@ TEST_CASE("consistent from errors of a degree, seeds 1 to 100, two-sided" *
        {imu_class_model(ImuClass::kTactical, RangeEnd::kMid), automotive_mems_model()}) {
     std::vector<double> nees(kSeeds);
     sim::parallel_for(nees.size(), [&](std::size_t k) {
-      const Drive drive = drive_on(course, imu, {0.01, 0.02, 0.05, 2.5}, k + 1);
+      const CourseDrive drive = drive_on(course, imu, {0.01, 0.02, 0.05, 2.5}, k + 1);
       Invariant filter(drive.config, drive.start, Kernel(drive.P));
       run(filter, drive, [](const Invariant&, std::size_t) {});
-      Estimate truth = test::truth_estimate(course.trajectory, kDriveS);
+      Estimate truth = test::truth_estimate(course.trajectory, kCourseS);
       truth.bias = drive.log.bias;
       const ErrorVector xi = InvariantError::coordinates(difference(truth, filter.estimate()));
       nees[k] = xi.dot(filter.covariance().llt().solve(xi));

@@ -25,8 +25,8 @@ inline ErrorDynamics random_dynamics(std::uint64_t seed, double dt_s, double tau
   step.C_eb_mean = e.nav.q_eb.toRotationMatrix();
   step.dv_f_e_mps = dt_s * random_vector(random, 20.0);
   step.gravity_gradient_e = gravity_gradient_e(e.nav.r_e_m);
-  step.tau_a_s = tau_s;
-  step.tau_g_s = 2.0 * tau_s;
+  step.a_a = bias_decay(dt_s, tau_s);
+  step.g_g = bias_decay(dt_s, 2.0 * tau_s);
   return step;
 }
 

@@ -51,16 +51,16 @@ std::vector<ImuIncrement> constant_motion(Time from, const Eigen::Vector3d& omeg
   return increments;
 }
 
-ErrorDynamics random_dynamics(std::uint64_t seed) {
+ErrorDynamics random_dynamics(std::uint64_t seed, double dt_s = 0.01) {
   sim::Random random(seed, 3);
   const Estimate e = random_estimate(seed);
   ErrorDynamics d;
-  d.dt_s = 0.01;
+  d.dt_s = dt_s;
   d.C_eb_mean = e.nav.q_eb.toRotationMatrix();
   d.dv_f_e_mps = d.dt_s * random_vector(random, 50.0);
   d.gravity_gradient_e = gravity_gradient_e(e.nav.r_e_m);
-  d.tau_a_s = 20.0 + 300.0 * random.uniform();
-  d.tau_g_s = 20.0 + 300.0 * random.uniform();
+  d.a_a = bias_decay(dt_s, kTauA);
+  d.g_g = bias_decay(dt_s, kTauG);
   return d;
 }
 
@@ -124,16 +124,13 @@ TEST_CASE("F is the derivative of the nonlinear strapdown, block by block") {
 TEST_CASE("one step is F to second order") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
-    ErrorDynamics d = random_dynamics(seed);
-    const Eigen::Vector3d f_e_mps2 = d.dv_f_e_mps / d.dt_s;
-    const ErrorMatrix F =
-        system_matrix(d.C_eb_mean, f_e_mps2, d.gravity_gradient_e, d.tau_a_s, d.tau_g_s);
+    const ErrorDynamics second_long = random_dynamics(seed, 1.0);
+    const ErrorMatrix F = system_matrix(second_long.C_eb_mean, second_long.dv_f_e_mps,
+                                        second_long.gravity_gradient_e, kTauA, kTauG);
     // I + F dt + (F dt)^2 / 2: what is left shrinks as dt^3, eightfold by halving.
     const auto error = [&](double dt_s) {
-      d.dt_s = dt_s;
-      d.dv_f_e_mps = dt_s * f_e_mps2;
       Transition Phi;
-      advance(Phi, d);
+      advance(Phi, random_dynamics(seed, dt_s));
       const ErrorMatrix Fdt = dt_s * F;
       const ErrorMatrix second = ErrorMatrix::Identity() + Fdt + 0.5 * Fdt * Fdt;
       return (dense(Phi) - second).norm();
@@ -165,10 +162,7 @@ TEST_CASE("compose is the product of the dense matrices") {
     const auto spread = [](std::uint64_t first) {
       Transition Phi;
       for (std::uint64_t k = 0; k < 5; ++k) {
-        ErrorDynamics d = random_dynamics(first + k);
-        d.dt_s = 20.0;
-        d.dv_f_e_mps *= 2000.0;
-        advance(Phi, d);
+        advance(Phi, random_dynamics(first + k, 20.0));
       }
       return Phi;
     };

@@ -37,6 +37,11 @@ struct EkfConfig {
   double covariance_interval_s{0.1};
 };
 
+/// Whether filters of any kind can begin with this.
+/// @throws Error when the configuration or the estimate is invalid: the field, its value, the
+/// allowed range. The IMU's model is checked by process_noise().
+void validate(const EkfConfig& config, const Estimate& estimate);
+
 /// 1-sigma of the initial error, isotropic per group except attitude.
 struct InitialSigma {
   double tilt_rad{};

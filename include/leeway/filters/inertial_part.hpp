@@ -7,6 +7,7 @@
 #include "leeway/filters/ekf.hpp"
 #include "leeway/filters/error_state.hpp"
 #include "leeway/filters/measurement.hpp"
+#include "leeway/filters/transition.hpp"
 #include "leeway/gnss_fix.hpp"
 #include "leeway/imu.hpp"
 #include "leeway/strapdown.hpp"
@@ -26,8 +27,9 @@ class InertialPart {
   /// @throws Error when configuration or estimate are invalid, as Ekf does.
   InertialPart(const EkfConfig& config, const Estimate& estimate);
 
+  /// @returns what drives the error over the increment; the gravity gradient is the caller's.
   /// @pre inc.time - inc.dt_s = estimate().nav.time, inc.dt_s > 0.
-  StrapdownStep advance(const ImuIncrement& inc);
+  ErrorDynamics advance(const ImuIncrement& inc);
 
   /// What the fix tells of the error of the estimate. @pre is_usable(fix) at the estimate's time.
   Measurement measurement(const GnssFix& fix) const;

@@ -42,17 +42,12 @@ class KernelEkf {
   /// @pre inc.time - inc.dt_s = estimate().nav.time, inc.dt_s > 0.
   void predict(const ImuIncrement& inc) {
     if (Phi_.dt_s == 0.0) gravity_gradient_e_ = gravity_gradient_e(estimate().nav.r_e_m);
-    const StrapdownStep step = inertial_.advance(inc);
-    const ProcessNoise& noise = inertial_.noise();
-    const ErrorDynamics dynamics{.dt_s = inc.dt_s,
-                                 .C_eb_mean = step.C_eb_mean,
-                                 .dv_f_e_mps = step.dv_f_e_mps,
-                                 .gravity_gradient_e = gravity_gradient_e_,
-                                 .tau_a_s = noise.tau_a_s,
-                                 .tau_g_s = noise.tau_g_s};
-    if constexpr (requires { kernel_.propagate(dynamics, noise); }) {
+    ErrorDynamics dynamics = inertial_.advance(inc);
+    dynamics.gravity_gradient_e = gravity_gradient_e_;
+    if constexpr (requires { kernel_.propagate(dynamics, inertial_.noise()); }) {
       if (interval_s_ == 0.0 && is_flushed_) {
-        kernel_.propagate(dynamics, noise);  // Phi of the one increment need not be formed
+        kernel_.propagate(dynamics,
+                          inertial_.noise());  // Phi of the one increment need not be formed
         return;
       }
     }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 
 #include "leeway/filters/error_state.hpp"
 #include "leeway/imu_error_model.hpp"
@@ -35,8 +34,7 @@ struct ErrorDynamics {
   Eigen::Matrix3d C_eb_mean{Eigen::Matrix3d::Identity()};
   Eigen::Vector3d dv_f_e_mps{Eigen::Vector3d::Zero()};          ///< integral of specific force
   Eigen::Matrix3d gravity_gradient_e{Eigen::Matrix3d::Zero()};  ///< 1/s^2
-  double tau_a_s{std::numeric_limits<double>::infinity()};      ///< bias correlation times
-  double tau_g_s{std::numeric_limits<double>::infinity()};
+  double a_a{1.0}, g_g{1.0};  ///< what the step leaves of the biases, by bias_decay()
 };
 
 /// What is left of a bias of this correlation time: exp(-dt / tau), 1 for an infinite time.
