@@ -30,9 +30,9 @@ using test::near;
 using test::random_estimate;
 using test::random_vector;
 
-using Kernel = SymmetricKernel<double>;
-using PlainEkf = KernelEkf<Kernel>;
-using Invariant = InvariantEkf<Kernel>;
+using SymmetricDouble = SymmetricKernel<double>;
+using PlainEkf = KernelEkf<SymmetricDouble>;
+using Invariant = InvariantEkf<SymmetricDouble>;
 
 /// As the group has it: attitude, velocity and position errors along the estimated body axes. By
 /// its inverse, x = T xi to first order.
@@ -68,7 +68,7 @@ Estimate moved(const Estimate& estimate, const ErrorVector& xi_b) {
 }
 
 /// An error of this attitude part, of up to 10 m/s and 100 m.
-ErrorVector random_error(std::uint64_t seed, double angle_rad) {
+ErrorVector random_group_error(std::uint64_t seed, double angle_rad) {
   sim::Random random(seed, 9);
   ErrorVector xi = ErrorVector::Zero();
   xi.segment<3>(kPsi) = angle_rad * random.normal3().normalized();
@@ -87,14 +87,15 @@ ErrorVector error_after(const Estimate& start, const std::vector<ImuIncrement>& 
   return body_axes(end) * InvariantError::coordinates(difference(truth, end));
 }
 
-ErrorMatrix numeric_transition(const Estimate& start, const std::vector<ImuIncrement>& increments) {
+ErrorMatrix numeric_group_transition(const Estimate& start,
+                                     const std::vector<ImuIncrement>& increments) {
   return test::central_jacobian(
       [&](const ErrorVector& xi) { return error_after(start, increments, xi); },
       test::jacobian_steps(0.01, 1.0, 100.0, 0.1, 0.001));
 }
 
 /// Largest difference in units of the norm of each 3 x 3 block, and of 1e-6 of the largest.
-double worst_block(const ErrorMatrix& actual, const ErrorMatrix& expected) {
+double worst_group_block(const ErrorMatrix& actual, const ErrorMatrix& expected) {
   double worst = 0.0;
   for (int i = 0; i < kErrorStates; i += 3) {
     for (int j = 0; j < kErrorStates; j += 3) {
@@ -155,7 +156,7 @@ TEST_CASE("the correction is the exponential of SE_2(3), by its 5 x 5 matrices")
       CAPTURE(angle_rad);
       CAPTURE(seed);
       const Estimate start = random_estimate(seed);
-      const ErrorVector xi = random_error(seed, angle_rad);
+      const ErrorVector xi = random_group_error(seed, angle_rad);
       Estimate corrected = start;
       inject(corrected, InvariantError::correction(xi));
       const ErrorVector x = difference(moved(start, body_axes(start) * xi), corrected);
@@ -172,7 +173,7 @@ TEST_CASE("coordinates undo the correction, from zero to pi, and agree with x to
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
       CAPTURE(angle_rad);
       CAPTURE(seed);
-      const ErrorVector xi = random_error(seed, angle_rad);
+      const ErrorVector xi = random_group_error(seed, angle_rad);
       const ErrorVector x = InvariantError::correction(xi);
       CHECK(near(InvariantError::coordinates(x), xi, 1e-12));  // rounding of 100 m, thrice
       CHECK((x - xi).norm() <= 0.5 * angle_rad * xi.norm());
@@ -184,7 +185,7 @@ TEST_CASE("without a bias error the invariant error obeys its Phi however large 
   const sim::Trajectory trajectory = sim::manoeuvre_car();
   const Estimate start = at_start_of(trajectory);
   const auto increments = sim::true_increments(trajectory, 100.0, 10.0);
-  const ErrorMatrix Phi_b = numeric_transition(start, increments);
+  const ErrorMatrix Phi_b = numeric_group_transition(start, increments);
   Estimate end = start;
   test::carry(end, increments, test::kInf, test::kInf);
   const ErrorMatrix Phi = body_axes(end).inverse() * Phi_b * body_axes(start);
@@ -192,7 +193,7 @@ TEST_CASE("without a bias error the invariant error obeys its Phi however large 
   double least_additive_m = test::kInf;
   for (const double angle_rad : {0.5, 1.0, 2.0, 3.0}) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      const ErrorVector xi_b = random_error(seed, angle_rad);
+      const ErrorVector xi_b = random_group_error(seed, angle_rad);
       const ErrorVector left_b = error_after(start, increments, xi_b);
       worst = std::max(worst, (left_b - Phi_b * xi_b).cwiseAbs().maxCoeff());
       // The additive error of the same start.
@@ -214,7 +215,7 @@ TEST_CASE("without a bias error the invariant error obeys its Phi however large 
 TEST_CASE("Phi in body axes is that of the increments, whatever attitude and speed are believed") {
   const sim::Trajectory trajectory = sim::manoeuvre_car();
   const Estimate start = at_start_of(trajectory);
-  const Estimate believed = moved(start, random_error(1, 2.0));
+  const Estimate believed = moved(start, random_group_error(1, 2.0));
   const auto phi_b = [&](double rate_hz, const Estimate& from) -> ErrorMatrix {
     const auto increments = sim::true_increments(trajectory, rate_hz, 1.0);
     Estimate end = from;
@@ -224,9 +225,9 @@ TEST_CASE("Phi in body axes is that of the increments, whatever attitude and spe
   };
   SUBCASE("against central differences through the strapdown: second order in the increment") {
     const ErrorMatrix numeric =
-        numeric_transition(start, sim::true_increments(trajectory, 800.0, 1.0));
-    const double at_100_hz = worst_block(phi_b(100.0, start), numeric);
-    const double at_200_hz = worst_block(phi_b(200.0, start), numeric);
+        numeric_group_transition(start, sim::true_increments(trajectory, 800.0, 1.0));
+    const double at_100_hz = worst_group_block(phi_b(100.0, start), numeric);
+    const double at_200_hz = worst_group_block(phi_b(200.0, start), numeric);
     MESSAGE("worst block, relative: " << at_100_hz << " " << at_200_hz);
     CHECK(at_100_hz < 1e-4);
     CHECK(at_100_hz > 3.5 * at_200_hz);
@@ -291,7 +292,7 @@ TEST_CASE("a whole fix against the textbook's filter in body axes") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     const Update u = random_update(seed);
-    Invariant filter(u.config, u.start, Kernel(u.P));
+    Invariant filter(u.config, u.start, SymmetricDouble(u.P));
     filter.predict(u.inc);
     const Estimate before = filter.estimate();
     const ErrorMatrix to_body = body_axes(before);
@@ -321,8 +322,8 @@ TEST_CASE("a whole fix against the textbook's filter in body axes") {
 TEST_CASE("from small errors it is the plain filter to second order") {
   const Update u = random_update(1);
   const auto apart = [&](double scale) {
-    PlainEkf plain(u.config, u.start, Kernel(scale * scale * u.P));
-    Invariant invariant(u.config, u.start, Kernel(scale * scale * u.P));
+    PlainEkf plain(u.config, u.start, SymmetricDouble(scale * scale * u.P));
+    Invariant invariant(u.config, u.start, SymmetricDouble(scale * scale * u.P));
     plain.predict(u.inc);
     invariant.predict(u.inc);
     const ErrorVector x = scale * test::jacobian_steps(0.03, 0.3, 5.0, 0.1, 0.01);
@@ -344,9 +345,9 @@ TEST_CASE("from small errors it is the plain filter to second order") {
 
 TEST_CASE("a fix without numbers changes nothing") {
   const Update u = random_update(1);
-  Invariant filter(u.config, u.start, Kernel(u.P));
+  Invariant filter(u.config, u.start, SymmetricDouble(u.P));
   filter.update(GnssFix{});
-  CHECK(filter.covariance() == Kernel(u.P).matrix());
+  CHECK(filter.covariance() == SymmetricDouble(u.P).matrix());
   CHECK(filter.estimate().nav.r_e_m == u.start.nav.r_e_m);
 }
 
@@ -354,7 +355,7 @@ namespace {
 
 constexpr double kCourseRateHz = 50.0;
 constexpr double kCourseS = 200.0;
-constexpr int kSeeds = 100;
+constexpr int kCourseSeeds = 100;
 
 /// A trajectory with what its runs share.
 struct Course {
@@ -370,8 +371,8 @@ struct CourseDrive {
   test::Recording log{};
 };
 
-CourseDrive drive_on(const Course& course, const ImuErrorModel& imu, const InitialSigma& sigma,
-                     std::uint64_t seed) {
+CourseDrive drive_course(const Course& course, const ImuErrorModel& imu, const InitialSigma& sigma,
+                         std::uint64_t seed) {
   CourseDrive drive;
   drive.config.imu = imu;
   drive.config.gnss_correlation_s = 0.0;
@@ -387,7 +388,7 @@ CourseDrive drive_on(const Course& course, const ImuErrorModel& imu, const Initi
 
 /// Calls look(filter, increment number) before every fix.
 template <class Filter, class Look>
-void run(Filter& filter, const Drive& drive, const Look& look) {
+void run_course(Filter& filter, const CourseDrive& drive, const Look& look) {
   auto fix = drive.log.fixes.begin();
   for (std::size_t k = 0; k < drive.log.imu.size(); ++k) {
     filter.predict(drive.log.imu[k]);
@@ -416,14 +417,15 @@ template <class Filter>
 HeadingEnd heading_end(const Course& course, const ImuErrorModel& imu, double heading_rad,
                        std::uint64_t seed) {
   InitialSigma sigma{0.01, 1e-6, 0.05, 2.5};
-  CourseDrive drive = drive_on(course, imu, sigma, seed);
+  CourseDrive drive = drive_course(course, imu, sigma, seed);
   const Eigen::Vector3d down_e = down_e_at(drive.start.nav.r_e_m);
   const double sign = seed % 2 == 0 ? 1.0 : -1.0;
   drive.start.nav.q_eb = exp_quaternion(sign * heading_rad * down_e) * drive.start.nav.q_eb;
   sigma.heading_rad = heading_rad;
-  Filter filter(drive.config, drive.start, Kernel(initial_covariance(drive.start, sigma, imu)));
+  Filter filter(drive.config, drive.start,
+                SymmetricDouble(initial_covariance(drive.start, sigma, imu)));
   HeadingEnd end;
-  run(filter, drive, [&](const Filter& f, std::size_t k) {
+  run_course(filter, drive, [&](const Filter& f, std::size_t k) {
     const double t_s = to_seconds(course.increments[k].time);
     const Estimate truth = test::truth_estimate(course.trajectory, t_s);
     const ErrorVector x = difference(truth, f.estimate());
@@ -445,7 +447,7 @@ struct HeadingEnds {
 
 template <class Filter>
 HeadingEnds heading_ends(const Course& course, const ImuErrorModel& imu, double heading_rad) {
-  std::vector<HeadingEnd> ends(kSeeds);
+  std::vector<HeadingEnd> ends(kCourseSeeds);
   sim::parallel_for(ends.size(), [&](std::size_t k) {
     ends[k] = heading_end<Filter>(course, imu, heading_rad, k + 1);
   });
@@ -456,8 +458,8 @@ HeadingEnds heading_ends(const Course& course, const ImuErrorModel& imu, double 
     sum.false_claims += end.false_claim ? 1 : 0;
     settled_s.push_back(end.settled_s);
   }
-  std::nth_element(settled_s.begin(), settled_s.begin() + kSeeds / 2, settled_s.end());
-  sum.median_settled_s = settled_s[kSeeds / 2];
+  std::nth_element(settled_s.begin(), settled_s.begin() + kCourseSeeds / 2, settled_s.end());
+  sum.median_settled_s = settled_s[kCourseSeeds / 2];
   return sum;
 }
 
@@ -468,11 +470,11 @@ TEST_CASE("consistent from errors of a degree, seeds 1 to 100, two-sided" *
   const Course course{"car", sim::car_drive({.initial_rest_s = 1.0, .duration_s = 400.0})};
   for (const ImuErrorModel& imu :
        {imu_class_model(ImuClass::kTactical, RangeEnd::kMid), automotive_mems_model()}) {
-    std::vector<double> nees(kSeeds);
+    std::vector<double> nees(kCourseSeeds);
     sim::parallel_for(nees.size(), [&](std::size_t k) {
-      const CourseDrive drive = drive_on(course, imu, {0.01, 0.02, 0.05, 2.5}, k + 1);
-      Invariant filter(drive.config, drive.start, Kernel(drive.P));
-      run(filter, drive, [](const Invariant&, std::size_t) {});
+      const CourseDrive drive = drive_course(course, imu, {0.01, 0.02, 0.05, 2.5}, k + 1);
+      Invariant filter(drive.config, drive.start, SymmetricDouble(drive.P));
+      run_course(filter, drive, [](const Invariant&, std::size_t) {});
       Estimate truth = test::truth_estimate(course.trajectory, kCourseS);
       truth.bias = drive.log.bias;
       const ErrorVector xi = InvariantError::coordinates(difference(truth, filter.estimate()));
@@ -480,8 +482,8 @@ TEST_CASE("consistent from errors of a degree, seeds 1 to 100, two-sided" *
     });
     double sum = 0.0;
     for (const double value : nees) sum += value;
-    const int degrees = kErrorStates * kSeeds;
-    MESSAGE("mean NEES of 15 states " << sum / kSeeds);
+    const int degrees = kErrorStates * kCourseSeeds;
+    MESSAGE("mean NEES of 15 states " << sum / kCourseSeeds);
     CHECK(test::is_chi_square_mean(sum / degrees, degrees));
   }
 }
