@@ -1,6 +1,7 @@
 #include "leeway/filters/dense_kernel.hpp"
 
-#include "batch_gain.hpp"
+#include <cmath>
+
 #include "leeway/filters/error_state.hpp"
 
 namespace leeway {
@@ -22,6 +23,43 @@ template <class Scalar>
 Matrix<Scalar> triple_product(const Matrix<Scalar>& a, const Matrix<Scalar>& b) {
   const Matrix<Scalar> a_transposed = a.transpose();
   return product<Scalar>(product<Scalar>(a, b), a_transposed);
+}
+
+/// S = H P H^T + 1 = L L^T. P loses V V^T, V = P H^T L^-T. Columns from `rows` on are not set.
+template <class Scalar>
+using BatchFactor = Eigen::Matrix<Scalar, kErrorStates, kMaxRows>;
+
+/// Moves x_hat by the measurement and returns V.
+template <class Scalar>
+BatchFactor<Scalar> batch_gain(const Matrix<Scalar>& P, ErrorVector& x_hat,
+                               const MeasurementRows& H, const MeasurementValues& z) {
+  const int rows = static_cast<int>(H.rows());
+  BatchFactor<Scalar> V;
+  Eigen::Matrix<Scalar, kMaxRows, kMaxRows> L;
+  Eigen::Matrix<Scalar, kMaxRows, 1> white;
+  for (int i = 0; i < rows; ++i) {
+    const CovarianceVector<Scalar> h = H.row(i).transpose().template cast<Scalar>();
+    V.col(i) = P.lazyProduct(h);
+    white(i) = static_cast<Scalar>(z(i) - H.row(i).dot(x_hat));
+    for (int j = 0; j <= i; ++j) L(i, j) = h.dot(V.col(j));
+    L(i, i) += 1;
+  }
+  // V <- V L^-T and white <- L^-1 white, as L is found column by column.
+  for (int j = 0; j < rows; ++j) {
+    const Scalar inverse = 1 / std::sqrt(L(j, j));
+    for (int i = j; i < rows; ++i) L(i, j) *= inverse;
+    V.col(j) *= inverse;
+    white(j) *= inverse;
+    for (int i = j + 1; i < rows; ++i) {
+      for (int k = j + 1; k <= i; ++k) L(i, k) -= L(i, j) * L(k, j);
+      V.col(i) -= L(i, j) * V.col(j);
+      white(i) -= L(i, j) * white(j);
+    }
+  }
+  for (int i = 0; i < rows; ++i) {
+    x_hat += (white(i) * V.col(i)).template cast<double>();
+  }
+  return V;
 }
 
 }  // namespace
@@ -57,7 +95,7 @@ void DenseKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
     update_in_sequence(*this, x_hat, H, z);
     return;
   }
-  const BatchFactor<Scalar, kErrorStates> V = batch_gain<Scalar, kErrorStates>(P_, x_hat, H, z);
+  const BatchFactor<Scalar> V = batch_gain<Scalar>(P_, x_hat, H, z);
   for (int i = 0; i < H.rows(); ++i) P_ -= V.col(i) * V.col(i).transpose();
 }
 
