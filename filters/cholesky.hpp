@@ -38,25 +38,22 @@ class Cholesky {
     return 2.0 * sum;
   }
 
+  /// The first rows of B, as many as A has, become those of L^-1 B.
+  template <class Rows>
+  void whiten(Rows&& B) const {
+    for (int i = 0; i < rows_; ++i) {
+      for (int k = 0; k < i; ++k) {
+        if (at(i, k) != 0.0) B.row(i) -= at(i, k) * B.row(k);
+      }
+      B.row(i) *= 1.0 / at(i, i);
+    }
+  }
+
   /// L^-1 B.
   template <class Matrix>
   Matrix whitened(Matrix B) const {
-    for (int i = 0; i < rows_; ++i) {
-      for (int k = 0; k < i; ++k) B.row(i) -= at(i, k) * B.row(k);
-      B.row(i) /= at(i, i);
-    }
+    whiten(B);
     return B;
-  }
-
-  /// The first columns of B, as many as A has rows, become those of B L^-T.
-  template <class Matrix>
-  void whiten_columns(Matrix&& B) const {
-    for (int i = 0; i < rows_; ++i) {
-      for (int k = 0; k < i; ++k) {
-        if (at(i, k) != 0.0) B.col(i) -= at(i, k) * B.col(k);
-      }
-      B.col(i) *= 1.0 / at(i, i);
-    }
   }
 
   /// v^T A^-1 v.

@@ -60,16 +60,6 @@ void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T) {
   P.middleCols<3>(row) = (P.middleCols<3>(row) * T.transpose()).eval();
 }
 
-VehicleCross transported(const Transition& Phi, const VehicleCross& C) {
-  VehicleCross result;
-  result.middleRows<3>(kPsi) = Phi.psi.leftCols<kErrorStates>() * C;
-  result.middleRows<3>(kDv) = Phi.v.leftCols<kErrorStates>() * C;
-  result.middleRows<3>(kDr) = Phi.r.leftCols<kErrorStates>() * C;
-  result.middleRows<3>(kBa) = Phi.a_a * C.middleRows<3>(kBa);
-  result.middleRows<3>(kBg) = Phi.g_g * C.middleRows<3>(kBg);
-  return result;
-}
-
 double scalar_update(ErrorMatrix& P, ErrorVector& x_hat, const ErrorVector& h, double z) {
   return scalar_update_of<kErrorStates>(P, x_hat, h, z);
 }

@@ -108,8 +108,8 @@ WhiteColumns<N> whitened(const Measurement& m, const Eigen::Matrix<double, 6, 1>
     for (int k = kErrorStates; k < N; ++k) white.H(k, i) = m.H_vehicle(i, k - kErrorStates);
     white.z(i) = m.innovation(i);
   }
-  R_factor.whiten_columns(white.H);
-  R_factor.whiten_columns(white.z.transpose());
+  R_factor.whiten(white.H.transpose());
+  R_factor.whiten(white.z);
   for (int i = 0; i < white.rows; ++i) {
     white.H.col(i) *= weights(i);
     white.z(i) *= weights(i);
@@ -410,7 +410,7 @@ void Ekf::flush() {
   if (covariance_is_current()) return;
   propagate(P_, Phi_, noise_);
   if (estimates_vehicle_) {
-    vehicle_.cross = transported(Phi_, vehicle_.cross);
+    vehicle_.cross = times(Phi_, vehicle_.cross);
     vehicle_.P.diagonal() += Phi_.dt_s * vehicle_.random_walk_per_s;
   }
   Phi_ = Transition{};

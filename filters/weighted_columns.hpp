@@ -42,21 +42,6 @@ void add_scaled(Array<Scalar, kWeightedColumns>& a, Scalar factor,
   }
 }
 
-/// Phi x.
-template <class Scalar>
-CovarianceVector<Scalar> transported(const Transition& Phi, const CovarianceVector<Scalar>& x) {
-  const auto times = [&x](const Transition::Rows& rows) {
-    return rows.template leftCols<kErrorStates>().template cast<Scalar>() * x;
-  };
-  CovarianceVector<Scalar> result;
-  result.template segment<3>(kPsi) = times(Phi.psi);
-  result.template segment<3>(kDv) = times(Phi.v);
-  result.template segment<3>(kDr) = times(Phi.r);
-  result.template segment<3>(kBa) = static_cast<Scalar>(Phi.a_a) * x.template segment<3>(kBa);
-  result.template segment<3>(kBg) = static_cast<Scalar>(Phi.g_g) * x.template segment<3>(kBg);
-  return result;
-}
-
 /// @param factor         upper triangular
 /// @param factor_weight  weights of its columns
 template <class Scalar>
@@ -73,13 +58,13 @@ WeightedColumns<Scalar> weighted_columns(const Transition& Phi, const ProcessNoi
   for (const int first : {kPsi, kDv, kBa, kBg}) {
     for (int i = first; i < first + 3; ++i) {
       const CovarianceVector<Scalar> unit = CovarianceVector<Scalar>::Unit(i);
-      set(column++, transported<Scalar>(Phi, unit), static_cast<Scalar>(half_q(i)));
+      set(column++, times(Phi, unit), static_cast<Scalar>(half_q(i)));
       set(column++, unit, static_cast<Scalar>(half_q(i)));
     }
   }
   for (int j = 0; j < kErrorStates; ++j) {
     const CovarianceVector<Scalar> values = factor.col(j);
-    set(kFactorColumn + j, transported<Scalar>(Phi, values), factor_weight(j));
+    set(kFactorColumn + j, times(Phi, values), factor_weight(j));
   }
   set(kWeightedColumns - 1, CovarianceVector<Scalar>::Zero(), 0);
   return result;

@@ -87,7 +87,7 @@ void ErrorTrack::extend(Leg& leg, const Piece& piece, double dt_s) const {
   advance(Phi, dynamics);
   const ParameterMatrix half =
       0.5 * dt_s * parameter_input(piece.C_eb, piece.f_b_mps2, piece.omega_ib_b_radps);
-  leg.B = times<kSensorParameters>(Phi, leg.B + half) + half;
+  leg.B = times(Phi, leg.B + half) + half;
 }
 
 Leg ErrorTrack::part(std::size_t step, double from_s, double to_s) const {

@@ -27,7 +27,7 @@ void SourceCovariance::propagate(const Leg& leg) {
   for (MarkovSource& source : processes_) step_process(source, 0.5 * leg.Phi.dt_s);
   leeway::propagate(P, leg.Phi, noise);
   for (MarkovSource& source : processes_) {
-    source.S = times<3>(leg.Phi, source.S);
+    source.S = times(leg.Phi, source.S);
     step_process(source, 0.5 * leg.Phi.dt_s);
   }
 }
@@ -72,7 +72,7 @@ void SourceCovariance::update(const ScalarGain& gain) {
 }
 
 void ParameterSources::propagate(const Leg& leg) {
-  S_ = times<kSensorParameters>(leg.Phi, S_) + leg.B;
+  S_ = times(leg.Phi, S_) + leg.B;
 }
 
 void ParameterSources::update(const ScalarGain& gain) {

@@ -17,7 +17,7 @@ ErrorVector carried(const ErrorTrack& track, double from_s, double to_s, ErrorVe
                     const Eigen::Matrix<double, kSensorParameters, 1>& parameters) {
   while (from_s < to_s) {
     const Leg leg = track.leg(from_s, to_s);
-    x = times<1>(leg.Phi, x) + leg.B * parameters;
+    x = times(leg.Phi, x) + leg.B * parameters;
     from_s = leg.end_s;
   }
   return x;

@@ -51,9 +51,6 @@ void propagate(ErrorMatrix& P, const ErrorDynamics& step, const ProcessNoise& no
 /// What becomes of P when the three errors from `row` on become T times what they are.
 void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T);
 
-/// Phi C: what becomes of the covariance of the 15 errors with constants.
-VehicleCross transported(const Transition& Phi, const VehicleCross& C);
-
 /// A scalar measurement of unit variance: z = h x + noise.
 /// P <- (I - K h) P (I - K h)^T + K K^T, evaluated as two products (Joseph's form, not its
 /// expansion); x_hat <- x_hat + K (z - h x_hat).

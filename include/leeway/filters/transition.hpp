@@ -54,6 +54,23 @@ ErrorMatrix system_matrix(const Eigen::Matrix3d& C_eb, const Eigen::Vector3d& f_
                           const Eigen::Matrix3d& gravity_gradient_e, double tau_a_s,
                           double tau_g_s);
 
+/// Phi X: what becomes of errors, the columns of X, in their precision.
+template <class Errors>
+typename Errors::PlainObject times(const Transition& Phi, const Eigen::MatrixBase<Errors>& X) {
+  using Scalar = typename Errors::Scalar;
+  const auto& x = X.derived().eval();  // X itself unless it is an expression
+  const auto product = [&x](const Transition::Rows& rows) {
+    return rows.template leftCols<kErrorStates>().template cast<Scalar>() * x;
+  };
+  typename Errors::PlainObject y;
+  y.template middleRows<3>(kPsi) = product(Phi.psi);
+  y.template middleRows<3>(kDv) = product(Phi.v);
+  y.template middleRows<3>(kDr) = product(Phi.r);
+  y.template middleRows<3>(kBa) = static_cast<Scalar>(Phi.a_a) * x.template middleRows<3>(kBa);
+  y.template middleRows<3>(kBg) = static_cast<Scalar>(Phi.g_g) * x.template middleRows<3>(kBg);
+  return y;
+}
+
 /// Phi as a dense matrix.
 ErrorMatrix dense(const Transition& Phi);
 

@@ -66,17 +66,4 @@ class ErrorTrack {
   std::vector<ParameterMatrix> B_{};  // likewise
 };
 
-/// Phi X: the columns of X are errors.
-template <int columns>
-Eigen::Matrix<double, kErrorStates, columns> times(
-    const Transition& Phi, const Eigen::Matrix<double, kErrorStates, columns>& X) {
-  Eigen::Matrix<double, kErrorStates, columns> Y;
-  Y.template middleRows<3>(kPsi) = Phi.psi.template leftCols<kErrorStates>() * X;
-  Y.template middleRows<3>(kDv) = Phi.v.template leftCols<kErrorStates>() * X;
-  Y.template middleRows<3>(kDr) = Phi.r.template leftCols<kErrorStates>() * X;
-  Y.template middleRows<3>(kBa) = Phi.a_a * X.template middleRows<3>(kBa);
-  Y.template middleRows<3>(kBg) = Phi.g_g * X.template middleRows<3>(kBg);
-  return Y;
-}
-
 }  // namespace leeway::sim
