@@ -71,14 +71,31 @@ StrapdownStep euler_step(NavState& state, const ImuIncrement& inc) {
   return {C_eb, dv_f_e};
 }
 
-/// Second order in everything but the body-frame integrals, which the caller supplies in dv_f_e.
+/// gravity_e() in line.
+template <GravityModel gravity>
+[[gnu::always_inline]] inline Triple gravity_of(const Triple& r_e_m) {
+  if constexpr (gravity == GravityModel::kNormal) {
+    return zonal::gravity_e<zonal::kNormalDegree>(r_e_m);
+  } else if constexpr (gravity == GravityModel::kJ2) {
+    return zonal::gravity_e<zonal::kJ2Degree>(r_e_m);
+  } else {
+    return triple(gravity_e<gravity>(vector(r_e_m)));
+  }
+}
+
+/// omega x v for omega = (0, 0, rate).
+[[gnu::always_inline]] inline Triple turn_about_z(double rate, const Triple& v) {
+  return {-rate * v.y, rate * v.x, 0.0};
+}
+
+/// Second order in everything but the body-frame integrals, which the caller supplies in dv_f.
 template <GravityModel gravity, EarthRotation rotation>
-Eigen::Vector3d velocity_change(const NavState& state, const Eigen::Vector3d& dv_f_e, double dt_s) {
-  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
-  const Eigen::Vector3d g_e = gravity_e<gravity>(state.r_e_m + 0.5 * dt_s * state.v_e_mps);
-  const Eigen::Vector3d coriolis_e = -2.0 * omega_ie_e.cross(state.v_e_mps);
-  const Eigen::Vector3d v_mid_e = state.v_e_mps + 0.5 * (dv_f_e + dt_s * (g_e + coriolis_e));
-  return dv_f_e + dt_s * (g_e - 2.0 * omega_ie_e.cross(v_mid_e));
+[[gnu::always_inline]] inline Triple velocity_change(const Triple& r_e_m, const Triple& v_e_mps,
+                                                     const Triple& dv_f_e_mps, double dt_s) {
+  constexpr double kOmega = rotation == EarthRotation::kOn ? wgs84::kRotationRateRadps : 0.0;
+  const Triple pushed = dv_f_e_mps + dt_s * gravity_of<gravity>(r_e_m + 0.5 * dt_s * v_e_mps);
+  const Triple v_mid = v_e_mps + 0.5 * (pushed - turn_about_z(2.0 * dt_s * kOmega, v_e_mps));
+  return pushed - turn_about_z(2.0 * dt_s * kOmega, v_mid);
 }
 
 template <GravityModel gravity, EarthRotation rotation>
@@ -87,7 +104,8 @@ StrapdownStep trapezoid_step(NavState& state, const ImuIncrement& inc) {
   state.q_eb = turned(-inc.dt_s * earth_turn_rate_e<rotation>(), state.q_eb, inc.dtheta_b_rad);
   const Eigen::Matrix3d C_mean = 0.5 * (C_old + state.q_eb.toRotationMatrix());
   const Eigen::Vector3d dv_f_e = C_mean * inc.dv_b_mps;
-  const Eigen::Vector3d dv_e = velocity_change<gravity, rotation>(state, dv_f_e, inc.dt_s);
+  const Eigen::Vector3d dv_e = vector(velocity_change<gravity, rotation>(
+      triple(state.r_e_m), triple(state.v_e_mps), triple(dv_f_e), inc.dt_s));
   state.r_e_m += inc.dt_s * (state.v_e_mps + 0.5 * dv_e);
   state.v_e_mps += dv_e;
   return {C_mean, dv_f_e};
@@ -109,23 +127,6 @@ StrapdownStep trapezoid_step(NavState& state, const ImuIncrement& inc) {
   } else {
     q_eb = turned(Eigen::Vector3d(0.0, 0.0, -earth_rad), q_eb, vector(phi_b_rad));
   }
-}
-
-/// gravity_e() in line.
-template <GravityModel gravity>
-[[gnu::always_inline]] inline Triple gravity_of(const Triple& r_e_m) {
-  if constexpr (gravity == GravityModel::kNormal) {
-    return zonal::gravity_e<zonal::kNormalDegree>(r_e_m);
-  } else if constexpr (gravity == GravityModel::kJ2) {
-    return zonal::gravity_e<zonal::kJ2Degree>(r_e_m);
-  } else {
-    return triple(gravity_e<gravity>(vector(r_e_m)));
-  }
-}
-
-/// omega x v for omega = (0, 0, rate).
-[[gnu::always_inline]] inline Triple turn_about_z(double rate, const Triple& v) {
-  return {-rate * v.y, rate * v.x, 0.0};
 }
 
 /// What a step of the increment schemes did.
@@ -169,9 +170,7 @@ template <GravityModel gravity, EarthRotation rotation>
   const Triple dv_f = dv_at_start - turn_about_z(0.5 * dt * kOmega, dv_at_start);
   motion.dv_f_e_mps = dv_f;
 
-  const Triple g_dt = dt * gravity_of<gravity>(r + 0.5 * dt * v);
-  const Triple v_mid = v + 0.5 * (dv_f + g_dt - turn_about_z(2.0 * dt * kOmega, v));
-  const Triple dv = (dv_f + g_dt) - turn_about_z(2.0 * dt * kOmega, v_mid);
+  const Triple dv = velocity_change<gravity, rotation>(r, v, dv_f, dt);
   motion.dv_e_mps = dv;
   assign(state.r_e_m, r + (dt * v + (0.5 * dt + curve.own_s) * dv + curve.last_e_m));
   assign(state.v_e_mps, v + dv);
