@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bench/motion.hpp"
+#include "filters/kernel_cases.hpp"
 #include "leeway/filters/covariance.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
 
@@ -18,30 +19,14 @@ inline Transition bench_transition(int increments) {
 }
 
 inline ErrorMatrix bench_covariance() {
-  ErrorVector sigma;
-  sigma << Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.1),
-      Eigen::Vector3d::Constant(2.0), Eigen::Vector3d::Constant(0.05),
-      Eigen::Vector3d::Constant(1e-3);
-  ErrorMatrix P = sigma.cwiseAbs2().asDiagonal();
+  ErrorMatrix P = working_sigmas().cwiseAbs2().asDiagonal();
   propagate(P, bench_transition(200), kBenchNoise);  // so that no correlation is zero
   return P;
 }
 
 /// Position and velocity of an antenna beside the IMU, whitened.
 inline MeasurementRows bench_fix_rows() {
-  const Eigen::Matrix3d C_eb = bench_start().nav.q_eb.toRotationMatrix();
-  const Eigen::Vector3d lever_b_m(0.5, 0.3, -1.2);
-  const ImuIncrement inc = bench_increment();
-  const Eigen::Vector3d omega_b_radps = inc.dtheta_b_rad / inc.dt_s;
-  MeasurementRows H = MeasurementRows::Zero(6, kErrorStates);
-  H.block<3, 3>(0, kPsi) = -skew(C_eb * lever_b_m);
-  H.block<3, 3>(0, kDr).setIdentity();
-  H.block<3, 3>(3, kPsi) = -skew(C_eb * omega_b_radps.cross(lever_b_m));
-  H.block<3, 3>(3, kDv).setIdentity();
-  H.block<3, 3>(3, kBg) = C_eb * skew(lever_b_m);
-  H.topRows<3>() /= 2.0;
-  H.bottomRows<3>() /= 0.05;
-  return H;
+  return antenna_rows(bench_start().nav.q_eb.toRotationMatrix(), 2.0, 0.05);
 }
 
 }  // namespace leeway::test
