@@ -100,8 +100,7 @@ class Ekf {
   /// @pre to > estimate().nav.time.
   void coast(Time to);
 
-  /// Gates the whole fix, then fuses it. @pre fix.time equals
-  /// estimate().nav.time.
+  /// Gates the whole fix, then fuses it. @pre fix.time equals estimate().nav.time.
   /// @param trust  what the fix is weighted by beyond its own R and the correlation time
   UpdateReport update(const GnssFix& fix, const FixTrust& trust = {});
 

@@ -46,8 +46,8 @@ class KernelEkf {
     dynamics.gravity_gradient_e = gravity_gradient_e_;
     if constexpr (requires { kernel_.propagate(dynamics, inertial_.noise()); }) {
       if (interval_s_ == 0.0 && is_flushed_) {
-        kernel_.propagate(dynamics,
-                          inertial_.noise());  // Phi of the one increment need not be formed
+        // Phi of the one increment need not be formed.
+        kernel_.propagate(dynamics, inertial_.noise());
         return;
       }
     }

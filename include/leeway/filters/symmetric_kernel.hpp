@@ -1,8 +1,7 @@
 /// @file
 /// The default covariance kernel: P in full storage, symmetric to the bit, the blocks of Phi that
 /// exist, half of every symmetric product. Its double instance is what covariance.hpp runs on.
-/// Instantiated for float and double; P, N x N, of 15 errors or of 15 and the
-/// vehicle's.
+/// Instantiated for float and double.
 #pragma once
 
 #include <Eigen/Core>
