@@ -135,7 +135,8 @@ Verdict Navigator::judge(const ImuIncrement& inc) const {
   if (!inc.dtheta_b_rad.allFinite() || !inc.dv_b_mps.allFinite() || !std::isfinite(inc.dt_s)) {
     return Verdict::kNotFinite;
   }
-  if (!(inc.dt_s > 0.0) || inc.dtheta_b_rad.norm() > config_.max_rate_radps * inc.dt_s ||
+  if (!(inc.dt_s > 0.0) || inc.dt_s > config_.max_jump_s ||
+      inc.dtheta_b_rad.norm() > config_.max_rate_radps * inc.dt_s ||
       inc.dv_b_mps.norm() > config_.max_force_mps2 * inc.dt_s || !is_possible(inc.time)) {
     return Verdict::kImplausible;
   }

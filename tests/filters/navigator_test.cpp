@@ -110,6 +110,9 @@ TEST_CASE("bad IMU data: its verdict, its count, and nothing else") {
       {"infinite length", [](ImuIncrement& i) { i.dt_s = kInf; }, Verdict::kNotFinite},
       {"no length", [](ImuIncrement& i) { i.dt_s = 0.0; }, Verdict::kImplausible},
       {"negative length", [](ImuIncrement& i) { i.dt_s = -0.01; }, Verdict::kImplausible},
+      // 2026-11-28, by the fuzzer: as the very first, longer than Time can count, it threw.
+      {"a length of 1e30 s", [](ImuIncrement& i) { i.dt_s = 1e30; }, Verdict::kImplausible},
+      {"more than max_jump_s", [](ImuIncrement& i) { i.dt_s = 60.1; }, Verdict::kImplausible},
       {"rate", [](ImuIncrement& i) { i.dtheta_b_rad.x() = 1.01; }, Verdict::kImplausible},
       {"force", [](ImuIncrement& i) { i.dv_b_mps.x() = -10.1; }, Verdict::kImplausible},
       {"largest double", [](ImuIncrement& i) { i.dv_b_mps.setConstant(1.7e308); },
