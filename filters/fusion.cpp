@@ -8,14 +8,7 @@
 namespace leeway {
 namespace {
 
-constexpr std::uint32_t kWidenFrom = 3;  // fixes refused in a row: chance alone does not do it
-constexpr std::uint32_t kRestartFrom = 10;
-constexpr double kWidening = 2.0;  // of P, at each of them
-constexpr double kUnknownVelocityMps = 30.0;
 constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
-constexpr std::uint32_t kLockouts = 3;          // so many within so long: widening does not cure it
-constexpr double kLockoutsWithinS = 120.0;
-constexpr double kRelapseS = 60.0;  // locked out again this soon: the attitude is wrong too
 
 AlignmentConfig alignment_of(const NavigatorConfig& config) {
   AlignmentConfig alignment = config.alignment;
@@ -150,8 +143,7 @@ void Fusion::align(const GnssFix& fix) {
 
 void Fusion::note_fused(Time t) {
   last_fused_ = t;
-  gated_in_a_row_ = 0;
-  gated_since_.reset();
+  lock_out_.end();
 }
 
 Verdict Fusion::settle(const GnssFix& fix) {
@@ -159,7 +151,7 @@ Verdict Fusion::settle(const GnssFix& fix) {
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
   // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
   // distance is not one that the estimate has drifted.
-  const bool outlier = last_update_.outcome == Outcome::kGated && gated_in_a_row_ == 0;
+  const bool outlier = last_update_.outcome == Outcome::kGated && !lock_out_.is_row();
   if (bank_->collapsed() && !outlier) {
     if (fix.position) {
       position_noise_.note(fix.time, last_update_.position_innovation_e_m, fix.position->R_e_m2,
@@ -186,46 +178,22 @@ void Fusion::follow_drift() {
 }
 
 Verdict Fusion::locked_out(const GnssFix& fix) {
-  if (gated_in_a_row_++ == 0) gated_since_ = fix.time;
-  if (gated_in_a_row_ < kWidenFrom) return Verdict::kGated;
-  if (gated_in_a_row_ == kWidenFrom && locks_out_again(fix.time)) {
-    ++resets_;
-    realign();
-    return Verdict::kReset;
+  switch (lock_out_.refused(fix.time, fix.position.has_value())) {
+    case LockOut::Remedy::kWait:
+      return Verdict::kGated;
+    case LockOut::Remedy::kWiden:
+      bank_->for_each([](Ekf& filter) { filter.widen(LockOut::kWidening); });
+      return Verdict::kGated;
+    case LockOut::Remedy::kRestart:
+      bank_->for_each([&fix](Ekf& filter) { restart_motion(filter, fix); });
+      note_fused(fix.time);
+      break;
+    case LockOut::Remedy::kRealign:
+      realign();
+      break;
   }
-  if (gated_in_a_row_ < kRestartFrom) {
-    bank_->for_each([](Ekf& filter) { filter.widen(kWidening); });
-    return Verdict::kGated;
-  }
-  if (!fix.position) return Verdict::kGated;
   ++resets_;
-  const bool relapse = last_reset_ && to_seconds(fix.time - *last_reset_) < kRelapseS;
-  last_reset_ = fix.time;
-  if (relapse) {
-    realign();
-  } else {
-    restart_motion(fix);
-  }
   return Verdict::kReset;
-}
-
-bool Fusion::locks_out_again(Time t) {
-  if (!first_lockout_ || to_seconds(t - *first_lockout_) > kLockoutsWithinS) {
-    first_lockout_ = t;
-    lockouts_ = 0;
-  }
-  return ++lockouts_ >= kLockouts;
-}
-
-void Fusion::restart_motion(const GnssFix& fix) {
-  const Eigen::Matrix3d unknown =
-      kUnknownVelocityMps * kUnknownVelocityMps * Eigen::Matrix3d::Identity();
-  bank_->for_each([&](Ekf& filter) {
-    filter.restart_motion(fix.position->r_e_m, fix.position->R_e_m2,
-                          fix.velocity ? fix.velocity->v_e_mps : filter.estimate().nav.v_e_mps,
-                          fix.velocity ? fix.velocity->R_e_m2ps2 : unknown);
-  });
-  note_fused(fix.time);
 }
 
 void Fusion::realign() {
@@ -234,9 +202,7 @@ void Fusion::realign() {
   aligner_ = Aligner(alignment_of(config_), filter_of(config_));
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
-  first_lockout_.reset();
-  gated_in_a_row_ = 0;
-  gated_since_.reset();
+  lock_out_.forget();
 }
 
 void Fusion::guard_numbers() {

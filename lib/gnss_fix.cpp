@@ -16,7 +16,7 @@ bool is_covariance(const Eigen::Matrix3d& R) {
   const double scale = R.diagonal().maxCoeff();
   if ((R - R.transpose()).cwiseAbs().maxCoeff() > kSymmetryTolerance * scale) return false;
   const Eigen::LLT<Eigen::Matrix3d> llt(R);
-  return llt.info() == Eigen::Success;
+  return llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() >= kLeastSigma;
 }
 
 }  // namespace

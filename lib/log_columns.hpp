@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "leeway/gnss_fix.hpp"
 #include "text_fields.hpp"
 
 namespace leeway {
@@ -16,7 +17,7 @@ inline constexpr double kMaxSpeedMps = 1e4;
 inline constexpr Column kTimeColumn{Column::kTime};
 
 constexpr Column sigma_column(int slot, bool optional = false) {
-  return {slot, kSmallest, kMaxSigma, optional};
+  return {slot, kLeastSigma, kMaxSigma, optional};
 }
 
 constexpr Column velocity_column(int slot) { return {slot, -kMaxSpeedMps, kMaxSpeedMps, true}; }

@@ -27,7 +27,7 @@ struct ScalarRowParser {
 ScalarRowParser scalar_parser(LineReader& lines, const ScalarColumns& columns) {
   const std::array wanted{NamedColumn{"t_s", kTimeColumn},
                           NamedColumn{columns.value, {0, -columns.largest, columns.largest}}};
-  const std::array sigma{NamedColumn{columns.sigma, {1, kSmallest, columns.largest, true}}};
+  const std::array sigma{NamedColumn{columns.sigma, {1, kLeastSigma, columns.largest, true}}};
   const std::string expected = "a CSV header with " + join(wanted) + " (and " + join(sigma) + ")";
   CsvHeader header(first_line(lines, expected), lines.path());
   if (const auto missing = header.missing(wanted); !missing.empty()) {

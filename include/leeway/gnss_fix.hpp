@@ -36,9 +36,13 @@ struct GnssFix {
   std::optional<GnssVelocity> velocity{};
 };
 
+/// The least standard deviation of a measurement, m or m/s, a thousandth of what any sensor claims:
+/// below it, squares and their inverses run out of range.
+inline constexpr double kLeastSigma = 1e-9;
+
 /// True when the fix has a part, all numbers are finite, the position is within 100 km of the
-/// ellipsoid's surface, and every covariance is symmetric and positive definite. A fix that fails
-/// is bad data: count it, use nothing of it.
+/// ellipsoid's surface, and every covariance is symmetric and positive definite, with at least
+/// kLeastSigma given the other axes. A fix that fails is bad data: count it, use nothing of it.
 bool is_usable(const GnssFix& fix);
 
 }  // namespace leeway

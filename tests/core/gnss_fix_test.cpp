@@ -98,6 +98,7 @@ TEST_CASE("a covariance must be symmetric and positive definite") {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   CHECK(usable_with(R));
   CHECK(usable_with(1e-12 * R));
+  CHECK_FALSE(usable_with(1e-200 * R));  // its inverse, squared, is infinite
   CHECK_FALSE(usable_with(Eigen::Matrix3d::Zero()));
   CHECK_FALSE(usable_with(-R));
   R(2, 2) = -1.0;

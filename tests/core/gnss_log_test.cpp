@@ -129,8 +129,9 @@ TEST_CASE("each kind of damaged row costs that row and is counted with its place
       {"2,45,-80", LineDamage::kMissingField, ":3:9: missing field: ''"},
       {"1,45,-80,120,2,3,4" + rest, LineDamage::kDuplicateTime, ":3:1: time repeated: '1,45,-"},
       {"0,45,-80,120,2,3,4" + rest, LineDamage::kTimeGoesBack, ":3:1: time goes back: '0,45,-"},
+      {"2,45,-80,120,1e-30,3,4" + rest, LineDamage::kOutOfRange, ":3:14: out of range: '1e-30'"},
       // Each sigma is allowed, but their squares are not a numerically definite covariance.
-      {"2,45,-80,120,1e-30,1e5,1e5" + rest, LineDamage::kOutOfRange, ":3:1: out of range: '2,45,"},
+      {"2,45,-80,120,1e-9,1e5,1e5" + rest, LineDamage::kOutOfRange, ":3:1: out of range: '2,45,"},
   };
   const TempDir dir;
   const std::string good = ",45,-80,120,2,3,4" + rest + "\n";

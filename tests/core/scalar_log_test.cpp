@@ -65,6 +65,8 @@ TEST_CASE("readings that no vehicle gives are not usable") {
   CHECK(is_usable(OdometerSpeed{{}, -3.0, 0.1}));
   CHECK_FALSE(is_usable(OdometerSpeed{{}, 501.0, 0.1}));
   CHECK_FALSE(is_usable(OdometerSpeed{{}, 3.0, 0.0}));
+  // 2026-11-28: the square of such a sigma is zero, and the filter divided by it.
+  CHECK_FALSE(is_usable(OdometerSpeed{{}, 3.0, 1e-308}));
   CHECK_FALSE(is_usable(OdometerSpeed{{}, NAN, 0.1}));
   CHECK(is_usable(BarometricHeight{{}, -20.0, 0.5}));
   CHECK_FALSE(is_usable(BarometricHeight{{}, 2e5, 0.5}));

@@ -8,6 +8,7 @@
 
 #include "leeway/filters/alignment.hpp"
 #include "leeway/filters/heading_bank.hpp"
+#include "leeway/filters/lock_out.hpp"
 #include "leeway/filters/mount_estimator.hpp"
 #include "leeway/filters/navigator_config.hpp"
 #include "leeway/filters/noise_scale.hpp"
@@ -49,7 +50,7 @@ class Fusion {
 
   const UpdateReport& last_update() const { return last_update_; }
   const std::optional<Time>& last_fused() const { return last_fused_; }
-  const std::optional<Time>& gated_since() const { return gated_since_; }
+  const std::optional<Time>& gated_since() const { return lock_out_.since(); }
   const NoiseScale& position_noise() const { return position_noise_; }
   const NoiseScale& velocity_noise() const { return velocity_noise_; }
   bool at_rest() const { return aiding_.at_rest(); }
@@ -61,8 +62,7 @@ class Fusion {
   template <class Archive>
   void visit(Archive& archive) {
     archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
-            last_fused_, gated_since_, last_reset_, first_lockout_, lockouts_, gated_in_a_row_,
-            repairs_, resets_, realignments_);
+            last_fused_, lock_out_, repairs_, resets_, realignments_);
     const Ekf filter = any_filter();
     bool has_bank = bank_.has_value();
     archive(has_bank);
@@ -84,8 +84,6 @@ class Fusion {
   Verdict aid(bool is_on, F&& measurement);
   Verdict locked_out(const GnssFix& fix);
   void realign();
-  bool locks_out_again(Time t);
-  void restart_motion(const GnssFix& fix);
   void guard_numbers();
   void watch_covariance();
   Ekf any_filter() const;
@@ -99,12 +97,8 @@ class Fusion {
   std::optional<Eigen::Matrix3d> C_bs_;
   std::optional<HeadingBank> bank_{};
   UpdateReport last_update_{};
-  std::optional<Time> last_fused_{};   // fix
-  std::optional<Time> gated_since_{};  // the first of the fixes refused in a row
-  std::optional<Time> last_reset_{};
-  std::optional<Time> first_lockout_{};
-  std::uint32_t lockouts_{0};
-  std::uint32_t gated_in_a_row_{0};
+  std::optional<Time> last_fused_{};  // fix
+  LockOut lock_out_{};
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};
   std::uint32_t realignments_{0};
