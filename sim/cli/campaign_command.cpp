@@ -66,7 +66,8 @@ void print_errors(const sim::CampaignResult& r) {
 void print_consistency(const sim::CampaignResult& r) {
   Table table({"<consistency", "found", "<of an honest filter"});
   table.add({"NEES of 15 states", number(r.mean_nees, 2),
-             fmt::format("{:.2f} to {:.2f} (95 %)", r.nees_low, r.nees_high)});
+             fmt::format("{:.2f} to {:.2f} (95 %)", r.nees_low, r.nees_high)},
+            r.mean_nees >= r.nees_low && r.mean_nees <= r.nees_high ? Tone::kGood : Tone::kBad);
   table.add({"NIS of fused fixes / degrees of freedom", number(r.nis_over_dof, 3), "1"});
   table.add({"errors beyond the claimed R95 radius, %", number(100.0 * r.beyond_r95, 2), "5"});
   table.print();

@@ -35,6 +35,14 @@ std::string outcome_of(const sim::Accuracy& accuracy) {
   return word;
 }
 
+Tone tone_of(const sim::Compared& c) {
+  const sim::Consistency consistency = sim::consistency_of(c.accuracy);
+  if (consistency == sim::Consistency::kDiverged || consistency == sim::Consistency::kNotFinite) {
+    return Tone::kBad;
+  }
+  return c.on_front ? Tone::kGood : Tone::kPlain;
+}
+
 void print_rows(const sim::Comparison& comparison, bool only_front) {
   Table table({"no.", "<front", "<variant", "ns/s", "least", "most", "RMS, m", "R95, m", "NEES",
                "<consistency", "<dominated by"});
@@ -44,7 +52,8 @@ void print_rows(const sim::Comparison& comparison, bool only_front) {
     table.add({number_of(i), c.on_front ? "*" : "", c.name, number(c.cost.median_ns_per_s, 0),
                number(c.cost.least_ns_per_s, 0), number(c.cost.most_ns_per_s, 0),
                number(c.accuracy.figures.rms_horizontal_m, 4), number(c.accuracy.r95_m, 4),
-               number(nees_of(c.accuracy), 2), outcome_of(c.accuracy), number_of(c.dominated_by)});
+               number(nees_of(c.accuracy), 2), outcome_of(c.accuracy), number_of(c.dominated_by)},
+              tone_of(c));
   }
   table.print();
 }

@@ -93,9 +93,10 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
       pessimism = std::max(pessimism, 1.0 / ratio);
       if (ratio < kWorthSaying) continue;
       any = true;
-      table.add({imu.scene.imu_name, fmt::format("{:g}", a.limit_m), calibrated(a),
-                 number(a.true_m, 2), number(a.claimed_m, 2),
-                 fmt::format("optimistic by x{:.2f}", ratio)});
+      table.add(
+          {imu.scene.imu_name, fmt::format("{:g}", a.limit_m), calibrated(a), number(a.true_m, 2),
+           number(a.claimed_m, 2), fmt::format("optimistic by x{:.2f}", ratio)},
+          Tone::kDoubtful);
     }
   }
   if (any) {
@@ -127,7 +128,8 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
                  seconds(imu.intervals[i].interval_s), std::to_string(r.trials),
                  number(r.rms_over_sigma, 3), number(c.rms_over_true, 3), number(r.mean_nees, 2),
                  fmt::format("{:.2f} to {:.2f}", r.nees_low, r.nees_high),
-                 std::to_string(r.diverged), verdict(c)});
+                 std::to_string(r.diverged), verdict(c)},
+                c.consistent ? Tone::kGood : Tone::kBad);
     }
   }
   table.print();

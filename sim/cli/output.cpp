@@ -1,44 +1,74 @@
 #include "output.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/color.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <system_error>
 
 #include "commands.hpp"
 
 namespace leeway::cli {
+namespace {
+
+/// https://no-color.org
+bool shows_colour() {
+  const char* no_color = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0') &&
+         (terminal == nullptr || std::string_view(terminal) != "dumb");
+}
+
+fmt::text_style style_of(Tone tone) {
+  switch (tone) {
+    case Tone::kGood:
+      return fmt::fg(fmt::terminal_color::green);
+    case Tone::kDoubtful:
+      return fmt::fg(fmt::terminal_color::yellow);
+    case Tone::kBad:
+      return fmt::fg(fmt::terminal_color::red);
+    case Tone::kPlain:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
 
 std::string number(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
 }
 
 Table::Table(const std::vector<std::string>& headings) {
-  std::vector<std::string> row;
   for (const std::string& heading : headings) {
     is_left_.push_back(heading.starts_with('<'));
-    row.push_back(heading.substr(is_left_.back() ? 1 : 0));
+    headings_.push_back(heading.substr(is_left_.back() ? 1 : 0));
   }
-  rows_.push_back(std::move(row));
 }
 
 void Table::print() const {
-  std::vector<std::size_t> widths(is_left_.size(), 0);
-  for (const auto& row : rows_) {
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < headings_.size(); ++c) {
+    widths.push_back(headings_[c].size());
+    for (const Row& row : rows_) widths[c] = std::max(widths[c], row.cells[c].size());
   }
-  for (const auto& row : rows_) {
+  const bool in_colour = shows_colour();
+  const auto print_line = [&](const std::vector<std::string>& cells, fmt::text_style style) {
     std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      line += is_left_[c] ? fmt::format("  {:<{}}", row[c], widths[c])
-                          : fmt::format("  {:>{}}", row[c], widths[c]);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      line += is_left_[c] ? fmt::format("  {:<{}}", cells[c], widths[c])
+                          : fmt::format("  {:>{}}", cells[c], widths[c]);
     }
-    fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
-  }
+    line.resize(line.find_last_not_of(' ') + 1);
+    fmt::print(in_colour ? style : fmt::text_style{}, "{}", line);
+    fmt::print("\n");
+  };
+  print_line(headings_, fmt::emphasis::bold);
+  for (const Row& row : rows_) print_line(row.cells, style_of(row.tone));
 }
 
 void print_json(std::string_view command, Json input, Json results) {
@@ -79,11 +109,11 @@ void Progress::show(double fraction, std::optional<double> remaining_s) {
   drawn_ = true;
   const double done = std::clamp(fraction, 0.0, 1.0);
   const std::string bar(static_cast<std::size_t>(std::lround(done * kWidth)), '=');
-  fmt::print(stderr, "\r{} [{:<{}}] {:3.0f} %", label_, bar, kWidth, 100.0 * done);
-  if (!remaining_s) return;
-  const auto seconds = std::llround(std::clamp(*remaining_s, 0.0, 1e9));
-  fmt::print(stderr, ", {}:{:02}:{:02} to go \033[K", seconds / 3600, seconds / 60 % 60,
-             seconds % 60);
+  const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
+  const double to_go_s = remaining_s.value_or(elapsed_s * (1.0 - done) / std::max(done, 1e-6));
+  const auto seconds = std::llround(std::clamp(to_go_s, 0.0, 1e9));
+  fmt::print(stderr, "\r{} [{:<{}}] {:3.0f} %, {}:{:02}:{:02} to go \033[K", label_, bar, kWidth,
+             100.0 * done, seconds / 3600, seconds / 60 % 60, seconds % 60);
 }
 
 }  // namespace leeway::cli

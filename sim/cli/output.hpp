@@ -18,18 +18,29 @@ using Json = nlohmann::ordered_json;
 /// A number with so many decimals, or "-" for what is not defined.
 std::string number(double value, int decimals);
 
+/// What a row of a table says: its colour on a terminal that shows any, unless NO_COLOR is set.
+enum class Tone { kPlain, kGood, kDoubtful, kBad };
+
 /// Aligned columns: to the right, or to the left where the heading begins with '<'.
 class Table {
  public:
   explicit Table(const std::vector<std::string>& headings);
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  void add(std::vector<std::string> row, Tone tone = Tone::kPlain) {
+    rows_.push_back({std::move(row), tone});
+  }
 
   /// On stdout, indented by two.
   void print() const;
 
  private:
+  struct Row {
+    std::vector<std::string> cells{};
+    Tone tone{Tone::kPlain};
+  };
+
   std::vector<bool> is_left_{};
-  std::vector<std::vector<std::string>> rows_{};
+  std::vector<std::string> headings_{};
+  std::vector<Row> rows_{};
 };
 
 /// The contract of --json: exactly this object on stdout. Numbers that are not finite become null.
@@ -38,7 +49,8 @@ void print_json(std::string_view command, Json input, Json results);
 /// Writes a file as a whole or not at all. @throws WriteFailure
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// A bar on stderr, where that is a terminal, once the work has taken a second. Gone afterwards.
+/// A bar on stderr, where that is a terminal, once the work has taken a second, with the time to
+/// go. Gone afterwards.
 class Progress {
  public:
   explicit Progress(std::string label);
@@ -48,7 +60,7 @@ class Progress {
 
   /// Whether anybody can see it.
   bool visible() const { return is_terminal_; }
-  /// @param remaining_s  shown as the time to go, where it is known
+  /// @param remaining_s  the time to go; absent: as long as what is done took
   void show(double fraction, std::optional<double> remaining_s = {});
 
  private:
@@ -56,7 +68,8 @@ class Progress {
 
   std::string label_;
   bool is_terminal_;
-  Clock::time_point next_{Clock::now() + std::chrono::seconds{1}};
+  Clock::time_point begin_{Clock::now()};
+  Clock::time_point next_{begin_ + std::chrono::seconds{1}};
   bool drawn_{false};
 };
 
