@@ -7,7 +7,6 @@
 #include <string>
 
 #include "leeway/error.hpp"
-#include "leeway/sim/covariance_analysis.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -73,6 +72,7 @@ class Solver {
       const double error_m =
           horizontal_error_m(scene_.budget.metric,
                              horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr)));
+      if (config_.free_inertial_observer) config_.free_inertial_observer(point.t_s, error_m);
       bool wanted = false;
       for (Interval& answer : answers) {
         if (!std::isnan(answer.free_inertial_s)) continue;
@@ -99,6 +99,7 @@ class Solver {
     auto found = known_.find(log_interval);
     if (found == known_.end()) {
       found = known_.emplace(log_interval, analysis_at(log_interval, track_)).first;
+      if (config_.observer) config_.observer(std::exp(log_interval), found->second);
     }
     return found->second;
   }

@@ -81,8 +81,9 @@ class Readings {
 /// One outage: a copy of the navigator that goes on without fixes.
 class Branch {
  public:
-  Branch(std::size_t index, const Outage& outage)
+  Branch(std::size_t index, const Outage& outage, const ReplayObserver& observer)
       : index_(index),
+        observer_(observer),
         start_(time_from_seconds(outage.start_s)),
         end_(start_ + duration_from_seconds(outage.duration_s)) {
     result_.outage = outage;
@@ -139,7 +140,11 @@ class Branch {
     result_.end_error_v_m = m.vertical_m;
     result_.max_error_h_m = std::max(result_.max_error_h_m, m.horizontal_m);
     last_compared_ = t;
+    if (!observer_.outage) return;
+    observer_.outage({index_, to_seconds(t - start_), m.horizontal_m, sigma_h_m()});
   }
+
+  double sigma_h_m() const { return navigator_->solution().sigma_position_n_m.head<2>().norm(); }
 
   void finish(Reference* reference) {
     // The reference must reach the very end; GNSS epochs may miss it by one.
@@ -149,13 +154,14 @@ class Branch {
       result_.against = reference ? Against::kReference : Against::kGnss;
     }
     if (navigator_->aligned()) {
-      result_.end_sigma_h_m = navigator_->solution().sigma_position_n_m.head<2>().norm();
+      result_.end_sigma_h_m = sigma_h_m();
     }
     over_ = true;
     navigator_.reset();
   }
 
   std::size_t index_;
+  const ReplayObserver& observer_;
   Time start_;
   Time end_;
   std::optional<Navigator> navigator_{};
@@ -206,8 +212,9 @@ class RmsSum {
 /// The pass over the logs.
 class Replay {
  public:
-  Replay(const ReplayInput& input, const NavigatorConfig& config)
-      : imu_(input.imu, input.imu_options),
+  Replay(const ReplayInput& input, const NavigatorConfig& config, const ReplayObserver& observer)
+      : observer_(observer),
+        imu_(input.imu, input.imu_options),
         gnss_(input.gnss, input.gnss_options),
         odometer_(input.odometer, odometer_columns(), OdometerSpeed{}.sigma_mps),
         barometer_(input.barometer, barometer_columns(), BarometricHeight{}.sigma_m),
@@ -216,19 +223,22 @@ class Replay {
     if (!input.truth.empty()) reference_.emplace(input);
     if (!input.solution.empty()) writer_.emplace(input.solution);
     if (input.start) navigator_.start(input.start->estimate, input.start->P);
-    for (const Outage& outage : input.outages) branches_.emplace_back(branches_.size(), outage);
+    for (const Outage& outage : input.outages) {
+      branches_.emplace_back(branches_.size(), outage, observer_);
+    }
     next_fix_ = gnss_.next();
   }
 
-  ReplayResult run(const std::function<void(Time)>& progress) {
+  ReplayResult run() {
     constexpr int kProgressEvery = 4096;
     int until_progress = kProgressEvery;
     while (const auto inc = imu_.next()) {
       push_fixes(inc->time);
       push(*inc);
-      if (progress && --until_progress == 0) {
+      if (observer_.verdict) tell_verdicts(inc->time);
+      if (observer_.progress && --until_progress == 0) {
         until_progress = kProgressEvery;
-        progress(inc->time);
+        observer_.progress(inc->time);
       }
     }
     return result();
@@ -277,7 +287,19 @@ class Replay {
     if (inc.time >= next_output_) output(inc.time);
   }
 
+  /// What has been counted since the call before.
+  void tell_verdicts(Time t) {
+    for (std::size_t v = 0; v < kVerdicts; ++v) {
+      const auto verdict = static_cast<Verdict>(v);
+      const std::uint64_t count = navigator_.count(verdict);
+      const bool is_news = verdict != Verdict::kAccepted && verdict != Verdict::kAligning;
+      if (is_news && count > told_[v]) observer_.verdict(t, verdict);
+      told_[v] = count;
+    }
+  }
+
   void note(const UpdateReport& update) {
+    if (observer_.fix) observer_.fix(update);
     ++result_.fixes;
     latest_nis_ = update.nis;
     latest_dof_ = update.dof;
@@ -293,17 +315,17 @@ class Replay {
     result_.last_solution_s = to_seconds(t);
     next_output_ = Time{(t.time_since_epoch() / output_interval_ + 1) * output_interval_};
     const Estimate& estimate = navigator_.filter().estimate();
-    if (reference_) {
-      if (const auto truth = reference_->at(t)) rms_.add(estimate.nav, *truth);
-    }
-    if (!writer_) return;
+    const std::optional<TruthRecord> truth = reference_ ? reference_->at(t) : std::nullopt;
+    if (truth) rms_.add(estimate.nav, *truth);
+    if (!writer_ && !observer_.epoch) return;
     Solution s = navigator_.solution();
     if (latest_dof_ > 0) {
       s.nis = latest_nis_;
       s.nis_dof = latest_dof_;
       latest_dof_ = 0;
     }
-    writer_->write(s);
+    if (writer_) writer_->write(s);
+    if (observer_.epoch) observer_.epoch(s, truth);
   }
 
   ReplayResult result() {
@@ -336,6 +358,7 @@ class Replay {
     return result_;
   }
 
+  const ReplayObserver& observer_;
   ImuLogReader imu_;
   GnssLogReader gnss_;
   Readings<OdometerSpeed> odometer_;
@@ -350,6 +373,7 @@ class Replay {
   Time next_output_{Time::min()};
   double latest_nis_{0.0};
   int latest_dof_{0};
+  std::array<std::uint64_t, kVerdicts> told_{};
   std::int64_t fused_{0};
   RmsSum rms_{};
   ReplayResult result_{};
@@ -361,12 +385,12 @@ ScalarColumns odometer_columns() { return {"speed_mps", "sigma_mps", 500.0}; }
 ScalarColumns barometer_columns() { return {"height_m", "sigma_m", 1e5}; }
 
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
-                    const std::function<void(Time)>& progress) {
+                    const ReplayObserver& observer) {
   if (!(input.solution_rate_hz > 0.0 && input.solution_rate_hz <= 1e4)) {
     throw Error("solution rate is " + std::to_string(input.solution_rate_hz) +
                 " Hz, must be above 0 and at most 10000 Hz");
   }
-  return Replay(input, config).run(progress);
+  return Replay(input, config, observer).run();
 }
 
 }  // namespace leeway::sim

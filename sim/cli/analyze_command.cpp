@@ -11,6 +11,8 @@
 #include "commands.hpp"
 #include "leeway/sim/covariance_analysis.hpp"
 #include "output.hpp"
+#include "report.hpp"
+#include "report_table.hpp"
 #include "scene_options.hpp"
 
 namespace leeway::cli {
@@ -20,6 +22,7 @@ struct AnalyzeOptions {
   SceneChoice scene{};
   std::filesystem::path moments{};
   std::filesystem::path budget{};
+  std::filesystem::path report{};
   bool json{false};
 };
 
@@ -105,6 +108,19 @@ Json results_json(const sim::CovarianceAnalysis& r) {
           {"budget", std::move(budget)}};
 }
 
+/// Horizontal (root of the sum of both variances) and down.
+void add_moment(ReportTable& table, const sim::CovariancePoint& point) {
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(point.r_e_m)).transpose();
+  const auto variances = [&C_ne](const ErrorMatrix& P) -> Eigen::Vector3d {
+    return (C_ne * P.block<3, 3>(kDr, kDr) * C_ne.transpose()).diagonal();
+  };
+  const Eigen::Vector3d claimed_m2 = variances(point.claimed);
+  const Eigen::Vector3d true_m2 = variances(point.truth);
+  const auto horizontal_m = [](const Eigen::Vector3d& m2) { return std::sqrt(m2.x() + m2.y()); };
+  table.add({point.t_s, horizontal_m(claimed_m2), horizontal_m(true_m2), std::sqrt(claimed_m2.z()),
+             std::sqrt(true_m2.z())});
+}
+
 int run(const AnalyzeOptions& options) {
   const sim::Scene scene = scene_of(options.scene);
   std::optional<MomentWriter> moments;
@@ -112,20 +128,25 @@ int run(const AnalyzeOptions& options) {
   Progress progress("analyze");
   sim::CovarianceConfig config;
   config.by_source = true;
-  if (moments || progress.visible()) {
+  ReportTable shown({"t_s", "claimed_h_m", "true_h_m", "claimed_d_m", "true_d_m"});
+  const bool reported = !options.report.empty();
+  if (moments || reported || progress.visible()) {
     config.observer = [&](const sim::CovariancePoint& point) {
       if (moments) writing([&] { moments->write(point); });
+      if (reported) add_moment(shown, point);
       progress.show(point.t_s / scene.duration_s);
     };
   }
   const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
   if (moments) writing([&] { moments->close(); });
   if (!options.budget.empty()) write_file(options.budget, budget_csv(result.budget));
+  const Json answer = answer_json("analyze", scene_json(scene), results_json(result));
   if (options.json) {
-    print_json("analyze", scene_json(scene), results_json(result));
+    print_json(answer);
   } else {
     print_report(scene, result);
   }
+  write_report(options.report, answer, {{"moments", shown.json()}});
   return kSuccess;
 }
 
@@ -140,6 +161,7 @@ void add_analyze_command(CLI::App& program, int& exit_code) {
                   "write claimed and true sigmas at every moment of the scene as CSV")
       ->type_name("FILE");
   app->add_option("--budget", options->budget, "write the error budget as CSV")->type_name("FILE");
+  add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(
       "Example:\n"

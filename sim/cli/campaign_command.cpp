@@ -11,6 +11,7 @@
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/trial_journal.hpp"
 #include "output.hpp"
+#include "report.hpp"
 #include "scene_options.hpp"
 
 namespace leeway::cli {
@@ -21,6 +22,7 @@ struct CommandOptions {
   std::optional<int> trials{};
   std::optional<std::uint64_t> first_seed{};
   sim::CampaignOptions campaign{};
+  std::filesystem::path report{};
   bool json{false};
 };
 
@@ -120,15 +122,17 @@ int run_on(const CommandOptions& options, const sim::Ranks& ranks) {
     return sim::campaign(scene, shown, ranks);
   }();
   if (!ranks.is_first()) return kSuccess;
+  Json input = scene_json(scene);
+  if (options.campaign.score_last_s) input["score_last_s"] = *options.campaign.score_last_s;
+  const Json answer = answer_json("campaign", std::move(input), results_json(result));
   if (options.json) {
-    Json input = scene_json(scene);
-    if (options.campaign.score_last_s) input["score_last_s"] = *options.campaign.score_last_s;
-    print_json("campaign", std::move(input), results_json(result));
+    print_json(answer);
   } else {
     print_report(scene, result);
     print_speed(scene, result, cores_of(options, ranks),
                 std::chrono::duration<double>(Clock::now() - start).count());
   }
+  write_report(options.report, answer);
   return result.epochs > 0 ? kSuccess : kNoAnswer;
 }
 
@@ -185,6 +189,7 @@ void add_campaign_command(CLI::App& program, int& exit_code) {
   app->add_option("--score-last-s", c.score_last_s,
                   "score fixes this close to the scene's end, s (default: as the scene's budget)")
       ->check(CLI::PositiveNumber);
+  add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(
       "Results are the same to the bit on any number of threads and ranks.\n"

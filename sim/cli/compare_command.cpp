@@ -7,6 +7,7 @@
 #include "compare_report.hpp"
 #include "leeway/sim/compare.hpp"
 #include "output.hpp"
+#include "report.hpp"
 #include "scene_options.hpp"
 
 namespace leeway::cli {
@@ -21,6 +22,7 @@ struct CompareCommand {
   std::optional<std::uint64_t> first_seed{};
   sim::CompareOptions compare{};
   std::filesystem::path csv{};
+  std::filesystem::path report{};
   bool json{false};
 };
 
@@ -45,16 +47,18 @@ sim::Comparison compared(const CompareCommand& options) {
 
 int run(const CompareCommand& options) {
   const sim::Comparison comparison = compared(options);
+  Json input = scene_json(comparison.scene);
+  input.erase("gate_probability");  // there is no gate
+  input["repeat"] = options.compare.repeat;
+  const Json answer = answer_json("compare", std::move(input), comparison_json(comparison));
   if (options.json) {
-    Json input = scene_json(comparison.scene);
-    input.erase("gate_probability");  // there is no gate
-    input["repeat"] = options.compare.repeat;
-    print_json("compare", std::move(input), comparison_json(comparison));
+    print_json(answer);
   } else {
     print_comparison(comparison, options.compare.repeat);
   }
   // Last: a file that cannot be written must not cost the minutes that the rest took.
   if (!options.csv.empty()) write_file(options.csv, comparison_csv(comparison));
+  write_report(options.report, answer);
   const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
                                [](const sim::Compared& c) { return c.on_front; });
   return any ? kSuccess : kNoAnswer;
@@ -81,6 +85,7 @@ void add_compare_command(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app->add_option("--csv", options->csv, "write a row for each variant as CSV")->type_name("FILE");
+  add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(
       "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 
 #include "commands.hpp"
 #include "leeway/sim/drift.hpp"
 #include "output.hpp"
+#include "report.hpp"
+#include "report_table.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -18,6 +21,7 @@ using sim::DriftReading;
 struct DriftOptions {
   sim::DriftConfig config{};
   std::filesystem::path curves{};
+  std::filesystem::path report{};
   bool json{false};
 };
 
@@ -120,23 +124,42 @@ std::string curves_csv(const sim::DriftStudy& study) {
   return csv + "\n";
 }
 
+/// Tables curve/IMU/RANGE/READING.
+Json curves_json(const sim::DriftStudy& study) {
+  Json curves = Json::object();
+  for (const sim::DriftCurve& curve : study.curves) {
+    ReportTable table({"t_s", "error_m", "p2_5_m", "p97_5_m"});
+    const auto at = [](const std::vector<double>& values, std::size_t k) {
+      return k < values.size() ? values[k] : std::numeric_limits<double>::quiet_NaN();
+    };
+    for (std::size_t k = 0; k < curve.t_s.size(); ++k) {
+      table.add({curve.t_s[k], curve.error_m[k], at(curve.p2_5_m, k), at(curve.p97_5_m, k)});
+    }
+    curves[fmt::format("curve/{}/{}/{}", name(curve.imu), name(curve.range),
+                       sim::name(curve.reading))] = table.json();
+  }
+  return curves;
+}
+
 int run(const DriftOptions& options) {
   const sim::DriftStudy study = [&options] {
     Progress progress("drift");
     return sim::drift_study(options.config, [&](double fraction) { progress.show(fraction); });
   }();
   if (!options.curves.empty()) write_file(options.curves, curves_csv(study));
-  if (!options.json) {
-    print_report(options, study);
-    return kSuccess;
-  }
   const sim::DriftConfig& c = options.config;
-  print_json("drift",
-             {{"trials", c.trials},
-              {"seed", c.seed},
-              {"latitude_deg", c.latitude_deg},
-              {"imu_rate_hz", c.imu_rate_hz}},
-             results_json(study));
+  const Json answer = answer_json("drift",
+                                  {{"trials", c.trials},
+                                   {"seed", c.seed},
+                                   {"latitude_deg", c.latitude_deg},
+                                   {"imu_rate_hz", c.imu_rate_hz}},
+                                  results_json(study));
+  if (options.json) {
+    print_json(answer);
+  } else {
+    print_report(options, study);
+  }
+  write_report(options.report, answer, curves_json(study));
   return kSuccess;
 }
 
@@ -155,6 +178,7 @@ void add_drift_command(CLI::App& program, int& exit_code) {
       ->capture_default_str();
   app->add_option("--curves", options->curves, "write error against time as CSV (m, s)")
       ->type_name("FILE.csv");
+  add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer("Example:\n  leeway drift --trials 500 --curves drift.csv");
   app->callback([options, &exit_code] { exit_code = run(*options); });

@@ -5,8 +5,10 @@
 #include "commands.hpp"
 #include "fuse_jobs.hpp"
 #include "fuse_report.hpp"
+#include "fuse_series.hpp"
 #include "leeway/csv_writer.hpp"
 #include "leeway/gnss_log.hpp"
+#include "report.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -46,13 +48,16 @@ bool is_answered(const FuseJob& job) {
 }
 
 /// @pre fuse_jobs() has opened the input: what fails from here on is the output.
-void replay(FuseJob& job, NavigatorConfig config) {
+/// @param series  collects what a report shows of the run; null: there is none
+void replay(FuseJob& job, NavigatorConfig config, FuseSeries* series) {
   if (job.estimates_mount) config.C_bs.reset();
   writing([&] {
     // Unclosed, it leaves nothing: this only tells early whether the file can be created.
     if (!job.input.solution.empty()) CsvWriter(job.input.solution, {"t_s"});
     ReplayProgress progress(job.input);
-    job.result = sim::replay(job.input, config, [&progress](Time t) { progress(t); });
+    sim::ReplayObserver observer = series ? series->observer() : sim::ReplayObserver{};
+    observer.progress = [&progress](Time t) { progress(t); };
+    job.result = sim::replay(job.input, config, observer);
   });
 }
 
@@ -60,15 +65,21 @@ int run(const FuseOptions& options) {
   const NamedImu imu = imu_of(options.imu);
   const NavigatorConfig config = navigator_config(options, imu.model);
   std::vector<FuseJob> jobs = fuse_jobs(options);
+  const std::filesystem::path& report = options.output.report;
+  Json all_series = Json::object();
   for (FuseJob& job : jobs) {
-    replay(job, config);
+    FuseSeries series;
+    replay(job, config, report.empty() ? nullptr : &series);
+    if (!report.empty()) series.add_to(all_series, job.drive);
     warn(job);
   }
+  const Json answer = fuse_json(options, imu.name, jobs);
   if (options.output.json) {
-    print_fuse_json(options, imu.name, jobs);
+    print_json(answer);
   } else {
     print_tables(options, imu.name, jobs);
   }
+  write_report(report, answer, std::move(all_series));
   return std::all_of(jobs.begin(), jobs.end(), is_answered) ? kSuccess : kNoAnswer;
 }
 
@@ -164,6 +175,7 @@ void add_output_options(CLI::App& app, FuseOutput& output) {
                  "solution epochs per second, in the file and in the RMS errors")
       ->check(CLI::Range(1e-3, 1e4))
       ->capture_default_str();
+  add_report_option(app, output.report);
   app.add_flag("--verbose", output.verbose, "list every outage, also when they are more than 20");
   app.add_flag("--json", output.json, "one JSON object on standard output instead of tables");
 }

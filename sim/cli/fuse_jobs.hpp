@@ -32,6 +32,7 @@ struct FuseLogs {
 
 struct FuseOutput {
   std::filesystem::path solution{};
+  std::filesystem::path report{};
   double rate_hz{10.0};
   bool verbose{false};
   bool json{false};

@@ -174,8 +174,8 @@ Json input_json(const FuseOptions& o, const std::string& imu_name) {
 
 }  // namespace
 
-void print_fuse_json(const FuseOptions& options, const std::string& imu_name,
-                     const std::vector<FuseJob>& jobs) {
+Json fuse_json(const FuseOptions& options, const std::string& imu_name,
+               const std::vector<FuseJob>& jobs) {
   const FuseTotals totals = totals_of(jobs);
   Json results{{"outages", outages_json(jobs)},
                {"outage_summary", summary_json(totals.outages)},
@@ -191,7 +191,7 @@ void print_fuse_json(const FuseOptions& options, const std::string& imu_name,
   } else {
     results["drives"] = drives_json(jobs);
   }
-  print_json("fuse", input_json(options, imu_name), std::move(results));
+  return answer_json("fuse", input_json(options, imu_name), std::move(results));
 }
 
 }  // namespace leeway::cli

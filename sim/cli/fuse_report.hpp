@@ -23,8 +23,9 @@ FuseTotals totals_of(const std::vector<FuseJob>& jobs);
 /// On stdout. @param imu_name  of the error model used
 void print_tables(const FuseOptions& options, const std::string& imu_name,
                   const std::vector<FuseJob>& jobs);
-void print_fuse_json(const FuseOptions& options, const std::string& imu_name,
-                     const std::vector<FuseJob>& jobs);
+
+Json fuse_json(const FuseOptions& options, const std::string& imu_name,
+               const std::vector<FuseJob>& jobs);
 
 /// On stderr: damaged or incomplete logs, gaps, refused fixes, a mount that looks upside down.
 void warn(const FuseJob& job);

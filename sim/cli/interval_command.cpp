@@ -9,9 +9,11 @@
 #include "commands.hpp"
 #include "interval_confirm.hpp"
 #include "interval_report.hpp"
+#include "interval_series.hpp"
 #include "leeway/imu_class.hpp"
 #include "leeway/sim/interval.hpp"
 #include "output.hpp"
+#include "report.hpp"
 #include "scene_options.hpp"
 
 namespace leeway::cli {
@@ -20,6 +22,7 @@ namespace {
 struct IntervalOptions {
   SceneChoice scene{};
   int confirm_trials{0};
+  std::filesystem::path report{};
   bool json{false};
 };
 
@@ -48,22 +51,26 @@ int run(const IntervalOptions& options) {
                                            : options.scene.limits_m;
   const std::vector<sim::Scene> scenes = scenes_to_solve(options.scene);
   std::vector<SolvedImu> solved;
+  Json series = Json::object();
   {
     Progress progress("interval");
     for (const sim::Scene& scene : scenes) {
       const auto done = static_cast<double>(solved.size());
       const auto all = static_cast<double>(scenes.size());
-      solved.push_back({scene, sim::solve_intervals(scene, limits_m, {}, [&](double fraction) {
-                          progress.show((done + fraction) / all);
-                        })});
+      IntervalSeries curves;
+      const auto show = [&](double fraction) { progress.show((done + fraction) / all); };
+      solved.push_back({scene, sim::solve_intervals(scene, limits_m, curves.observed({}), show)});
+      curves.add_to(series, scene.imu_name);
     }
   }
   if (options.confirm_trials > 0) confirm(solved, options.confirm_trials);
+  const Json answer = interval_json(solved);
   if (options.json) {
-    print_interval_json(solved);
+    print_json(answer);
   } else {
     print_interval_tables(solved);
   }
+  write_report(options.report, answer, std::move(series));
   return kSuccess;
 }
 
@@ -78,6 +85,7 @@ void add_interval_command(CLI::App& program, int& exit_code) {
                   "run so many Monte Carlo trials of the whole filter at every answer")
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
+  add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(
       "Without --imu: the five classes of the source paper, and the scene's own IMU. Without\n"

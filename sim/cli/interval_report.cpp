@@ -207,7 +207,7 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
   print_how(solved);
 }
 
-void print_interval_json(const std::vector<SolvedImu>& solved) {
+Json interval_json(const std::vector<SolvedImu>& solved) {
   Json results = Json::array();
   for (const SolvedImu& imu : solved) {
     for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
@@ -232,7 +232,7 @@ void print_interval_json(const std::vector<SolvedImu>& solved) {
   }
   Json input = scene_json(solved.front().scene);
   for (const char* varies : {"imu_model", "bias_model", "limit_m"}) input.erase(varies);
-  print_json("interval", std::move(input), std::move(results));
+  return answer_json("interval", std::move(input), std::move(results));
 }
 
 }  // namespace leeway::cli

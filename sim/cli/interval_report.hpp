@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "interval_confirm.hpp"
+#include "output.hpp"
 
 namespace leeway::cli {
 
 void print_interval_tables(const std::vector<SolvedImu>& solved);
 
 /// By the contract of --json.
-void print_interval_json(const std::vector<SolvedImu>& solved);
+Json interval_json(const std::vector<SolvedImu>& solved);
 
 }  // namespace leeway::cli

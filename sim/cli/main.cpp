@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "leeway/sim/ranks.hpp"
+#include "report.hpp"
 
 namespace {
 
@@ -35,6 +36,7 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExitCodes);
   int exit_code = kSuccess;
+  remember_command_line(argc, argv);
   add_interval_command(program, exit_code);
   add_analyze_command(program, exit_code);
   add_campaign_command(program, exit_code);

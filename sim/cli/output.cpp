@@ -71,14 +71,19 @@ void Table::print() const {
   for (const Row& row : rows_) print_line(row.cells, style_of(row.tone));
 }
 
-void print_json(std::string_view command, Json input, Json results) {
-  const Json object{{"leeway", LEEWAY_VERSION},
-                    {"command", command},
-                    {"input", std::move(input)},
-                    {"results", std::move(results)}};
-  // Paths need not be UTF-8.
-  fmt::print("{}\n", object.dump(2, ' ', false, Json::error_handler_t::replace));
+Json answer_json(std::string_view command, Json input, Json results) {
+  return {{"leeway", LEEWAY_VERSION},
+          {"command", command},
+          {"input", std::move(input)},
+          {"results", std::move(results)}};
 }
+
+std::string text_of(const Json& json, int indent) {
+  // Paths need not be UTF-8.
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+void print_json(const Json& answer) { fmt::print("{}\n", text_of(answer, 2)); }
 
 void write_file(const std::filesystem::path& path, std::string_view content) {
   std::filesystem::path partial = path;

@@ -43,8 +43,14 @@ class Table {
   std::vector<Row> rows_{};
 };
 
-/// The contract of --json: exactly this object on stdout. Numbers that are not finite become null.
-void print_json(std::string_view command, Json input, Json results);
+/// What a command found, for programs: the contract of --json.
+Json answer_json(std::string_view command, Json input, Json results);
+
+/// Numbers that are not finite become null; what is not UTF-8 is replaced.
+std::string text_of(const Json& json, int indent = -1);
+
+/// Exactly this object on stdout.
+void print_json(const Json& answer);
 
 /// Writes a file as a whole or not at all. @throws WriteFailure
 void write_file(const std::filesystem::path& path, std::string_view content);

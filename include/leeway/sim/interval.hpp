@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "leeway/sim/covariance_analysis.hpp"
 #include "leeway/sim/scene.hpp"
 
 namespace leeway::sim {
@@ -15,6 +16,10 @@ struct IntervalConfig {
   double shortest_s{0.1};  ///< intervals from here to half the scene are tried
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
   double covariance_step_s{1.0};
+  /// Called with every interval that is analysed on the way, in no order.
+  std::function<void(double interval_s, const CovarianceAnalysis&)> observer{};
+  /// Called on the way to free_inertial_s, with the error by the scene's metric.
+  std::function<void(double t_s, double error_m)> free_inertial_observer{};
 };
 
 /// The answer for one limit.

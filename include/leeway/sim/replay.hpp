@@ -68,14 +68,32 @@ struct ReplayResult {
   LogReport barometer_report{};
 };
 
+/// A branch without fixes, at the time of a withheld fix or at its end.
+struct OutageEpoch {
+  std::size_t outage{};  ///< of ReplayInput::outages
+  double since_s{};      ///< since it began
+  double error_h_m{};
+  double sigma_h_m{};  ///< the branch's own sqrt(P_NN + P_EE)
+};
+
+/// Called on the way, where not empty.
+struct ReplayObserver {
+  std::function<void(Time)> progress{};  ///< now and then, with the time reached
+  /// At the rate of the solution, with the truth of that time where there is one.
+  std::function<void(const Solution&, const std::optional<TruthRecord>&)> epoch{};
+  std::function<void(const UpdateReport&)> fix{};  ///< every fix that the filter judged
+  std::function<void(Time, Verdict)> verdict{};    ///< all but what is accepted or aligned with
+  std::function<void(const OutageEpoch&)> outage{};
+};
+
 /// What the logs of odometer and barometer hold.
 ScalarColumns odometer_columns();
 ScalarColumns barometer_columns();
 
 /// Runs the log in one pass and constant memory. Every outage branches from the fully aided state,
-/// so outages may overlap. @param progress  called now and then with the time reached
+/// so outages may overlap.
 /// @throws Error when a file cannot be read or the configuration is invalid.
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
-                    const std::function<void(Time)>& progress = {});
+                    const ReplayObserver& observer = {});
 
 }  // namespace leeway::sim

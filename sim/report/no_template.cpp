@@ -1,0 +1,7 @@
+#include "report_template.hpp"
+
+namespace leeway::cli {
+
+const std::string_view kReportTemplate{};
+
+}  // namespace leeway::cli

@@ -1,0 +1,275 @@
+/** leeway interval: how often each IMU needs a fix. */
+import type { Chart, Level, Series } from "../chart";
+import type { Report, Table } from "../report";
+import type { Grid, View } from "../view";
+import { count, duration, list, short, withUnit } from "../words";
+import { metricOf, sceneInWords, sceneOf, type SceneInput } from "./scene";
+
+interface Confirm {
+  readonly trials: number;
+  readonly rms_over_sigma: number;
+  readonly rms_over_true: number;
+  readonly nees: number;
+  readonly nees_low: number;
+  readonly nees_high: number;
+  readonly diverged: number;
+  readonly monte_carlo_interval_s: number | null;
+}
+
+interface Row {
+  readonly imu: string;
+  readonly range: string | null;
+  readonly limit_m: number;
+  readonly interval_s: number | null;
+  readonly free_inertial_s: number | null;
+  readonly consistent: boolean | null;
+  readonly confirm: Confirm | null;
+  readonly outcome: "solved" | "never" | "always";
+  readonly error_m: number;
+  readonly claimed_error_m: number;
+  readonly settled: boolean;
+  readonly covariance_step_effect: number;
+}
+
+export function intervalView(report: Report): View {
+  const rows = report.results as readonly Row[];
+  const scene = sceneOf(report);
+  const imus = [...new Set(rows.map(nameOf))];
+  const limits = [...new Set(rows.map((row) => row.limit_m))];
+  return {
+    title: "How long can an IMU go between GNSS fixes?",
+    scene: sceneInWords(scene, false),
+    answer: limits.map((limit) => answerFor(rows, limit)),
+    tables: [answersGrid(rows, imus, limits), ...confirmGrid(rows)],
+    trust: trust(rows, scene),
+    charts: [
+      errorChart(report, rows, imus, limits, scene),
+      timesChart(rows, imus, limits),
+      growthChart(report, imus, limits, scene),
+      claimChart(report, imus),
+    ],
+  };
+}
+
+const nameOf = (row: Row): string => (row.range ? `${row.imu}/${row.range}` : row.imu);
+/** A class without its "mid", which is what it is when nothing else is said. */
+const spoken = (imu: string): string => imu.replace(/\/mid$/, "");
+
+/** The interval to rely on: that of the trials where they contradict the linear analysis. */
+function reliable(row: Row): number | null {
+  return row.consistent === false ? (row.confirm?.monte_carlo_interval_s ?? null) : row.interval_s;
+}
+
+function answerFor(rows: readonly Row[], limit: number): string {
+  const asked = rows.filter((row) => row.limit_m === limit);
+  const name = (row: Row): string => spoken(nameOf(row));
+  const parts: string[] = [];
+  const solved = asked.filter((row) => reliable(row) !== null);
+  if (solved.length > 0) parts.push(`a fix is needed every ${list(solved.map(needOf))}`);
+  const never = asked.filter((row) => row.outcome === "never").map(name);
+  if (never.length === asked.length) parts.push("no IMU here can, however often there is a fix");
+  else if (never.length > 0) parts.push(`${list(never)} cannot, however often there is a fix`);
+  const unsure = asked.filter((row) => row.outcome !== "never" && reliable(row) === null).map(name);
+  if (unsure.length > 0) parts.push(`for ${list(unsure)} the trials found no interval`);
+  return `To stay within ${withUnit(limit, "m")}: ${parts.join("; ")}.`;
+}
+
+/** @pre it has an interval */
+function needOf(row: Row): string {
+  const sure = row.consistent === null ? "" : row.consistent ? " ✓" : " (by the trials)";
+  const more = row.outcome === "always" ? "half of the scene, " : "";
+  return `${more}${duration(reliable(row) as number)} by ${spoken(nameOf(row))}${sure}`;
+}
+
+function answersGrid(rows: readonly Row[], imus: readonly string[], limits: readonly number[]): Grid {
+  const cell = (imu: string, limit: number): string => {
+    const row = rows.find((r) => nameOf(r) === imu && r.limit_m === limit);
+    if (!row) return "-";
+    const mark = row.consistent === null ? "" : row.consistent ? " ✓" : " ✗";
+    return `${short(row.interval_s)}${mark} (${short(row.free_inertial_s)})`;
+  };
+  const anyTrials = rows.some((row) => row.consistent !== null);
+  return {
+    caption:
+      "Longest time between fixes, s; in brackets the time that it lasts without any, from a " +
+      "perfect start, s" +
+      (anyTrials ? ". ✓ confirmed by trials, ✗ contradicted by them." : "."),
+    headings: ["IMU", ...limits.map((limit) => withUnit(limit, "m"))],
+    rows: imus.map((imu) => [imu, ...limits.map((limit) => cell(imu, limit))]),
+  };
+}
+
+function confirmGrid(rows: readonly Row[]): Grid[] {
+  const confirmed = rows.filter((row) => row.confirm !== null);
+  if (confirmed.length === 0) return [];
+  return [
+    {
+      caption: "Monte Carlo trials of the whole nonlinear filter at these intervals",
+      headings: ["IMU", "limit, m", "interval, s", "trials", "RMS / claimed", "RMS / true", "NEES",
+        "band", "verdict"],
+      rows: confirmed.map((row) => {
+        const c = row.confirm as Confirm;
+        return [
+          nameOf(row), short(row.limit_m), short(row.interval_s), String(c.trials),
+          c.rms_over_sigma.toFixed(3), c.rms_over_true.toFixed(3), c.nees.toFixed(2),
+          `${c.nees_low.toFixed(2)} to ${c.nees_high.toFixed(2)}`,
+          row.consistent ? "confirmed" : `contradicted: ${withUnit(c.monte_carlo_interval_s, "s")}`,
+        ];
+      }),
+    },
+  ];
+}
+
+function trust(rows: readonly Row[], scene: SceneInput): string[] {
+  const step = Math.max(...rows.map((row) => row.covariance_step_effect));
+  return [
+    `“Within” means ${metricOf(scene)} just before a fix, at the end of the scene.`,
+    "The intervals are those of a covariance analysis: the filter's own equations, linearized " +
+      "along the true motion, against sensors that also have the errors the filter does not model.",
+    ...confirmationInWords(rows),
+    ...honesty(rows),
+    `${rows.filter((row) => row.settled).length} of ${rows.length} answers are of a filter that ` +
+      "has settled; the others hold for the end of the scene.",
+    `Halving the step of the analysis changes an error by ${short(100 * step)} % at most.`,
+  ];
+}
+
+function confirmationInWords(rows: readonly Row[]): string[] {
+  const tried = rows.filter((row) => row.confirm !== null);
+  if (tried.length === 0) {
+    return ["Not confirmed: no trials of the nonlinear filter were run. Add --confirm 200."];
+  }
+  const trials = (tried[0]?.confirm as Confirm).trials;
+  const failed = tried.filter((row) => row.consistent === false);
+  const name = (row: Row): string => `${spoken(nameOf(row))} at ${withUnit(row.limit_m, "m")}`;
+  const words = [
+    `${tried.length - failed.length} of ${count(tried.length, "answer")} confirmed (✓) by ` +
+      `${trials} Monte Carlo trials of the whole nonlinear filter each: it errs as the analysis ` +
+      "says and as it claims.",
+  ];
+  if (failed.length > 0) {
+    words.push(
+      `Contradicted (✗): ${list(failed.map(name))}. There the filter errs otherwise than it ` +
+        "claims, and the answer above is the interval at which the trials met the limit.",
+    );
+  }
+  return words;
+}
+
+function honesty(rows: readonly Row[]): string[] {
+  const ratios = rows.filter((row) => row.claimed_error_m > 0).map((row) => row.error_m / row.claimed_error_m);
+  const [least, most] = [Math.min(...ratios), Math.max(...ratios)];
+  if (ratios.length === 0) return [];
+  if (most < 1.05 && least > 0.95) {
+    return ["The filter is honest: what it claims is within 5 % of the true error at every answer."];
+  }
+  return [
+    `The true error is ${short(least)} to ${short(most)} times what the filter claims: above 1 it ` +
+      "is optimistic, because there are errors that it does not model.",
+  ];
+}
+
+function curves(report: Report, imus: readonly string[], kind: string): [string, number, Table][] {
+  return imus.flatMap((imu, i) => {
+    const table = report.series[`${kind}/${imu}`];
+    return table ? [[imu, i, table] as [string, number, Table]] : [];
+  });
+}
+
+const levels = (limits: readonly number[]): Level[] =>
+  limits.map((limit) => ({ at: limit, label: `limit ${withUnit(limit, "m")}` }));
+
+function errorChart(
+  report: Report, rows: readonly Row[], imus: readonly string[], limits: readonly number[],
+  scene: SceneInput,
+): Chart {
+  const lines = curves(report, imus, "curve").map(
+    ([imu, colour, table]): Series => ({
+      label: imu, style: "line", marked: true, colour,
+      x: table.column("interval_s"), y: table.column("true_m"),
+    }),
+  );
+  const trialled = rows.filter((row) => row.confirm !== null && row.interval_s !== null);
+  if (trialled.length > 0) {
+    lines.push({
+      label: "Monte Carlo", style: "points", colour: 5,
+      x: trialled.map((row) => row.interval_s as number),
+      y: trialled.map((row) => row.error_m * (row.confirm as Confirm).rms_over_true),
+      names: trialled.map((row) => `${nameOf(row)}, ${withUnit(row.limit_m, "m")}`),
+    });
+  }
+  return {
+    id: "error-over-interval",
+    title: "Error against the time between fixes",
+    caption:
+      `True horizontal error (${scene.metric}) just before a fix. Where a curve crosses a limit ` +
+      "is the longest interval. Markers are what was computed.",
+    x: { label: "time between fixes", unit: "s", log: true },
+    y: { label: "horizontal error before a fix", unit: "m", log: true },
+    series: lines, levels: levels(limits), hover: "point",
+  };
+}
+
+function timesChart(rows: readonly Row[], imus: readonly string[], limits: readonly number[]): Chart {
+  const solved = (imu: string, pick: (row: Row) => number | null): [number[], number[]] => {
+    const own = rows.filter((row) => nameOf(row) === imu && pick(row) !== null);
+    return [own.map((row) => row.limit_m), own.map((row) => pick(row) as number)];
+  };
+  const series = imus.flatMap((imu, colour): Series[] => {
+    const [x, y] = solved(imu, (row) => row.interval_s);
+    const [freeX, freeY] = solved(imu, (row) => row.free_inertial_s);
+    return [
+      { label: `${imu}, calibrated`, style: "line", marked: true, colour, x, y },
+      { label: `${imu}, free`, style: "line", dashed: true, marked: true, colour, x: freeX, y: freeY },
+    ];
+  });
+  return {
+    id: "free-against-calibrated",
+    title: "With fixes and without",
+    caption:
+      "Solid: the longest time between fixes that calibrate the sensors. Dashed: the time to the " +
+      "limit from a perfect start without any fix. " +
+      `${count(limits.length, "limit")}.`,
+    x: { label: "limit of the horizontal error", unit: "m", log: true },
+    y: { label: "time", unit: "s", log: true },
+    series, hover: "point",
+  };
+}
+
+function growthChart(
+  report: Report, imus: readonly string[], limits: readonly number[], scene: SceneInput,
+): Chart {
+  return {
+    id: "free-inertial",
+    title: "Growth of the error without any fix",
+    caption: `Horizontal error (${scene.metric}) from a perfect start with uncalibrated sensors.`,
+    x: { label: "time", unit: "s", log: true },
+    y: { label: "horizontal error", unit: "m", log: true },
+    series: curves(report, imus, "free_inertial").map(
+      ([imu, colour, table]): Series => ({
+        label: imu, style: "line", colour, x: table.column("t_s"), y: table.column("true_m"),
+      }),
+    ),
+    levels: levels(limits), hover: "point",
+  };
+}
+
+function claimChart(report: Report, imus: readonly string[]): Chart {
+  return {
+    id: "claimed-against-true",
+    title: "Does the filter know how wrong it is?",
+    caption:
+      "True error over the error that the filter claims. At 1 the filter is honest, above 1 it is " +
+      "optimistic.",
+    x: { label: "time between fixes", unit: "s", log: true },
+    y: { label: "true / claimed error", unit: "" },
+    series: curves(report, imus, "curve").map(([imu, colour, table]): Series => {
+      const claimed = table.column("claimed_m");
+      return {
+        label: imu, style: "line", marked: true, colour, x: table.column("interval_s"),
+        y: Array.from(table.column("true_m"), (v, i) => v / (claimed[i] as number)),
+      };
+    }),
+    levels: [{ at: 1, label: "honest" }], hover: "point",
+  };
+}

@@ -1,0 +1,91 @@
+/** That the charts of a report show the numbers that --json has. */
+import { strict as assert } from "node:assert";
+import { numberIn, type Row } from "./csv_rows";
+
+type Tables = ReadonlyMap<string, Row[]>;
+type Check = (results: unknown, tables: Tables) => void;
+
+function rowsIn(tables: Tables, chart: string, series: string): Row[] {
+  return (tables.get(chart) ?? []).filter((row) => row["series"] === series);
+}
+
+interface IntervalRow {
+  readonly imu: string;
+  readonly range: string;
+  readonly limit_m: number;
+  readonly interval_s: number;
+  readonly free_inertial_s: number;
+  readonly error_m: number;
+}
+
+const kTime = "time between fixes, s";
+
+function checkInterval(results: unknown, tables: Tables): void {
+  for (const row of results as IntervalRow[]) {
+    const imu = `${row.imu}/${row.range}`;
+    const answer = (series: string): number =>
+      numberIn(
+        rowsIn(tables, "free-against-calibrated", series).find(
+          (r) => numberIn(r, "limit of the horizontal error, m") === row.limit_m,
+        ),
+        "time, s",
+      );
+    assert.equal(answer(`${imu}, calibrated`), row.interval_s);
+    assert.equal(answer(`${imu}, free`), row.free_inertial_s);
+    const solved = rowsIn(tables, "error-over-interval", imu).find(
+      (r) => numberIn(r, kTime) === row.interval_s,
+    );
+    assert.equal(numberIn(solved, "horizontal error before a fix, m"), row.error_m);
+  }
+}
+
+interface FuseResults {
+  readonly rms: { readonly epochs: number; readonly horizontal_m: number };
+  readonly outages: readonly { readonly duration_s: number; readonly end_error_h_m: number }[];
+  readonly verdicts: Readonly<Record<string, number>>;
+}
+
+/** The errors drawn are in single precision: a relative 6e-8, far below 1e-5. */
+const kSingle = 1e-5;
+
+function checkFuse(results: unknown, tables: Tables): void {
+  const { rms, outages, verdicts } = results as FuseResults;
+  const squares = ["north", "east"].map((axis) => {
+    const errors = rowsIn(tables, `error-${axis}`, "error").map((r) => numberIn(r, `error ${axis}, m`));
+    assert.equal(errors.length, rms.epochs);
+    return errors.reduce((sum, e) => sum + e * e, 0) / errors.length;
+  });
+  const drawn = Math.sqrt((squares[0] as number) + (squares[1] as number));
+  assert(Math.abs(drawn / rms.horizontal_m - 1) < kSingle, `RMS ${drawn} m`);
+  const branch = rowsIn(tables, "outages", "error").at(-1);
+  assert.equal(numberIn(branch, "time since the outage began, s"), outages[0]?.duration_s);
+  const end = numberIn(branch, "horizontal error, m");
+  assert(Math.abs(end / (outages[0]?.end_error_h_m as number) - 1) < kSingle, `end ${end} m`);
+  assert.equal(rowsIn(tables, "verdicts", "fused").length, verdicts["fused"]);
+}
+
+interface CompareRow {
+  readonly variant: string;
+  readonly cost_ns_per_s: number;
+  readonly rms_horizontal_m: number | null;
+  readonly front: boolean;
+}
+
+function checkCompare(results: unknown, tables: Tables): void {
+  const rows = results as CompareRow[];
+  const drawn = tables.get("cost-against-error") ?? [];
+  assert.equal(drawn.length, rows.length);
+  for (const row of rows) {
+    const point = drawn.find((r) => r["name"]?.split(" (")[0] === row.variant);
+    assert.equal(numberIn(point, "cost per second of IMU data, ns"), row.cost_ns_per_s);
+    const rms_m = numberIn(point, "horizontal RMS error before a fix, m");
+    assert.equal(rms_m, row.rms_horizontal_m ?? NaN);
+    assert.equal(point?.["series"] === "front", row.front);
+  }
+}
+
+export const kNumbers: Readonly<Record<string, Check>> = {
+  compare: checkCompare,
+  fuse: checkFuse,
+  interval: checkInterval,
+};
