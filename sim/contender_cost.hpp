@@ -1,0 +1,28 @@
+/// @file
+/// What a filter costs: processor time of whole replays.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "contender.hpp"
+#include "leeway/sim/compare.hpp"
+
+namespace leeway::sim {
+
+/// Of one whole replay by the variant's filter, per second of IMU data.
+double timed_ns_per_s(const Variant& variant, const EkfConfig& believed, const TrialStart& start,
+                      const RecordedTrial& trial);
+
+/// Median, least and most. @pre not empty
+Cost cost_of(std::vector<double> ns_per_s);
+
+/// A timed run: nanoseconds per second of IMU data.
+using TimedRun = std::function<double()>;
+
+/// The costs of all, in their order, each round all of them in turn: what slows the machine for a
+/// while slows all alike. @pre rounds >= 1
+std::vector<Cost> interleaved_costs(const std::vector<TimedRun>& runs, int rounds,
+                                    const std::function<void(double)>& progress = {});
+
+}  // namespace leeway::sim
