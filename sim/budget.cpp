@@ -1,7 +1,10 @@
 #include "leeway/sim/budget.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "budget_parts.hpp"
@@ -54,9 +57,7 @@ class Budgeting {
     for (TermBudget& term : result_.terms) {
       term.is_kept = std::find(dropped.begin(), dropped.end(), term.term) == dropped.end();
     }
-    result_.reduced.model = without(full_, dropped);
-    result_.full.predicted = prediction_.of(full_);
-    result_.reduced.predicted = prediction_.of(result_.reduced.model);
+    choose_models(dropped);
     measure();
     price_models();
     judge();
@@ -98,8 +99,22 @@ class Budgeting {
     }
   }
 
+  std::array<ModelBudget*, 4> models() {
+    return {&result_.full, &result_.standard, &result_.at_full_rate, &result_.reduced};
+  }
+
+  void choose_models(const std::vector<ModelTerm>& dropped) {
+    result_.full.model = full_;
+    result_.standard.model = without(full_, {ModelTerm::kEachCovariance});
+    result_.reduced.model = without(full_, dropped);
+    result_.at_full_rate.model = result_.reduced.model;
+    result_.at_full_rate.model.imu_divider = 1;
+    for (ModelBudget* model : models()) model->predicted = prediction_.of(model->model);
+  }
+
   void measure() {
-    std::vector<BudgetCase> cases{{&plan_, full_}, {&plan_, result_.reduced.model}};
+    std::vector<BudgetCase> cases;
+    for (const ModelBudget* model : models()) cases.push_back({&plan_, model->model});
     std::vector<std::unique_ptr<TrialPlan>> other_sensors;
     for (const TermBudget& term : result_.terms) {
       const auto sources = sources_of(term.term);
@@ -112,18 +127,17 @@ class Budgeting {
       cases.push_back({other_sensors.back().get(), full_});
     }
     const auto accuracies = measured(cases, options_.threads, part(0.3, 0.9));
-    result_.full.measured = accuracies[0];
-    result_.reduced.measured = accuracies[1];
-    for (std::size_t i = 0; i < result_.terms.size(); ++i) {
-      result_.terms[i].measured_m = accuracies[i + 2].difference_m;
-    }
+    auto next = accuracies.begin();
+    for (ModelBudget* model : models()) model->measured = *next++;
+    for (TermBudget& term : result_.terms) term.measured_m = (next++)->difference_m;
   }
 
   void price_models() {
-    const auto costs =
-        costs_of(plan_, {full_, result_.reduced.model}, options_.repeat, part(0.9, 1.0)).costs;
-    result_.full.cost = costs[0];
-    result_.reduced.cost = costs[1];
+    std::vector<FilterModel> filters;
+    for (const ModelBudget* model : models()) filters.push_back(model->model);
+    const ModelCosts costs = costs_of(plan_, filters, options_.repeat, part(0.9, 1.0));
+    auto cost = costs.costs.begin();
+    for (ModelBudget* model : models()) model->cost = *cost++;
   }
 
   void judge() {

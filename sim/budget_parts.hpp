@@ -52,7 +52,7 @@ std::vector<MeasuredAccuracy> measured(const std::vector<BudgetCase>& cases, int
                                        const std::function<void(double)>& progress);
 
 /// The costs of the models in the first trial of the plan, in their order, and of every model what
-/// it saves of the first one in the same round.
+/// it saves of the first one, run just before it.
 struct ModelCosts {
   std::vector<Cost> costs{};
   std::vector<Cost> savings{};

@@ -101,6 +101,8 @@ struct Budget {
   Scene scene{};  ///< as it was run
   std::vector<TermBudget> terms{};
   ModelBudget full{};
+  ModelBudget standard{};      ///< full but for P every 0.1 s: what a filter does by default
+  ModelBudget at_full_rate{};  ///< the reduced one, given the IMU's increments one by one
   ModelBudget reduced{};
   bool keeps_limit{};   ///< the reduced model, by trials
   bool is_as_honest{};  ///< likewise: it exceeds its claim by at most kHonesty more than the full
@@ -114,7 +116,7 @@ inline constexpr double kHonesty = 1.1;
 inline constexpr double kUsableLimit = 0.9;
 
 struct BudgetOptions {
-  int repeat{9};   ///< timed runs of every model, 1 to 1000
+  int repeat{11};   ///< timed runs of every model, 1 to 1000
   int threads{0};  ///< of what is not timed; 0: all processors
   std::function<void(double fraction)> progress{};
 };
