@@ -163,7 +163,7 @@ struct IncrementMotion {
   const Triple x = C.x + (half.z * C.y - half.y * C.z);
   const Triple y = C.y + (half.x * C.z - half.z * C.x);
   const Triple z = C.z + (half.y * C.x - half.x * C.y);
-  step.C_eb_mean << x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z;
+  assign(step.C_eb_mean, x, y, z);
   assign(step.dv_f_e_mps, dv_f_e);
   return step;
 }

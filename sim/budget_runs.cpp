@@ -85,6 +85,7 @@ double empirical_error_m(HorizontalMetric metric, const std::vector<CaseRun>& ru
   std::vector<double> radii_m;
   Eigen::Vector2d sum_sq_m2 = Eigen::Vector2d::Zero();
   for (const CaseRun& run : runs) {
+    if (!run.score.finite) continue;
     for (const Eigen::Vector2d& error : run.error_ne_m) {
       radii_m.push_back(error.norm());
       sum_sq_m2 += error.cwiseAbs2();
@@ -99,6 +100,7 @@ double difference_m(const std::vector<CaseRun>& runs, const std::vector<CaseRun>
   double sum_m2 = 0.0;
   std::size_t epochs = 0;
   for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (!runs[k].score.finite || !others[k].score.finite) continue;
     epochs += runs[k].error_ne_m.size();
     for (std::size_t i = 0; i < runs[k].error_ne_m.size(); ++i) {
       sum_m2 += (runs[k].error_ne_m[i] - others[k].error_ne_m[i]).squaredNorm();
@@ -172,18 +174,18 @@ std::vector<MeasuredAccuracy> measured(const std::vector<BudgetCase>& cases, int
 ModelCosts costs_of(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
                     const std::function<void(double)>& progress) {
   GivenTrials given(plan.scene().first_seed);
-  const auto timed = [&](const FilterModel& model) {
+  const auto timed = [&](const FilterModel& model, std::size_t place) {
     const RecordedTrial& trial = given.to(plan, model);
     const TrialStart start = start_of(trial, model.config.biases);
-    return timed_ns_per_s(variant_of(model), model.config, start, trial);
+    return timed_ns_per_s(variant_of(model), model.config, start, trial, place);
   };
   std::vector<std::vector<double>> savings(models.size());
   std::vector<TimedRun> runs;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    runs.emplace_back([&, m] {
+    runs.emplace_back([&, m](std::size_t place) {
       // The first model beside each: what slows the machine slows both.
-      const double first_ns_per_s = timed(models.front());
-      const double ns_per_s = timed(models[m]);
+      const double first_ns_per_s = timed(models.front(), place);
+      const double ns_per_s = timed(models[m], place);
       savings[m].push_back(first_ns_per_s - ns_per_s);
       return ns_per_s;
     });

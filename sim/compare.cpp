@@ -103,9 +103,9 @@ std::vector<Cost> costs_of(const TrialPlan& plan, const std::vector<Variant>& va
   Recordings recordings(plan, plan.scene().first_seed);
   std::vector<TimedRun> runs;
   for (const Variant& variant : variants) {
-    runs.emplace_back([&plan, &recordings, variant] {
+    runs.emplace_back([&plan, &recordings, variant](std::size_t place) {
       const RecordedTrial& trial = recordings.at(variant.imu_divider);
-      return timed_ns_per_s(variant, plan.scene().filter, trial.start, trial);
+      return timed_ns_per_s(variant, plan.scene().filter, trial.start, trial, place);
     });
   }
   return interleaved_costs(runs, rounds, progress);

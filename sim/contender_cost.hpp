@@ -2,6 +2,7 @@
 /// What a filter costs: processor time of whole replays.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -10,15 +11,19 @@
 
 namespace leeway::sim {
 
-/// Of one whole replay by the variant's filter, per second of IMU data.
+/// Of one whole replay by the variant's filter, per second of IMU data. Where in a page of memory
+/// the filter lies, beside where its stack lies, can double it: processors take two addresses that
+/// agree in their last 12 bits for one.
+/// @param place  of the stack in its page, by cache lines; others for other runs, so that the median
+///               is of all
 double timed_ns_per_s(const Variant& variant, const EkfConfig& believed, const TrialStart& start,
-                      const RecordedTrial& trial);
+                      const RecordedTrial& trial, std::size_t place);
 
 /// Median, least and most. @pre not empty
 Cost cost_of(std::vector<double> ns_per_s);
 
-/// A timed run: nanoseconds per second of IMU data.
-using TimedRun = std::function<double()>;
+/// A timed run at a place: nanoseconds per second of IMU data.
+using TimedRun = std::function<double(std::size_t place)>;
 
 /// The costs of all, in their order, each round all of them in turn: what slows the machine for a
 /// while slows all alike. @pre rounds >= 1
