@@ -7,7 +7,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kWorthwhile = 0.01;  // of what the model costs: less is left to rounding
+constexpr double kWorthwhile = 0.03;  // of what the model costs: to less, costs do not repeat
 
 class Choice {
  public:

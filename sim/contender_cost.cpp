@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <ctime>
 #include <utility>
 
@@ -9,14 +10,16 @@ namespace leeway::sim {
 
 namespace {
 
-constexpr std::size_t kLineBytes = 64;
-constexpr std::size_t kLinesInPage = 64;
+constexpr std::uintptr_t kLineBytes = 64;
+constexpr std::uintptr_t kPageBytes = 4096;
 
-/// Replays from so many bytes further down the stack.
-[[gnu::noinline]] void replay_deeper(Contender& contender, const RecordedTrial& trial,
-                                     std::size_t bytes) {
-  auto* skipped = static_cast<volatile char*>(__builtin_alloca(bytes + 1));
-  *skipped = 0;
+/// Replays with the stack so far beyond the contender, in their pages.
+[[gnu::noinline]] void replay_at(Contender& contender, const RecordedTrial& trial,
+                                 std::size_t place) {
+  const auto frame = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+  const auto filter = reinterpret_cast<std::uintptr_t>(&contender);
+  const std::uintptr_t skipped = (frame - filter - kLineBytes * place) % kPageBytes;
+  *static_cast<volatile char*>(__builtin_alloca(skipped + 1)) = 0;
   contender.replay(trial, {});
 }
 
@@ -27,7 +30,7 @@ double timed_ns_per_s(const Variant& variant, const EkfConfig& believed, const T
   const auto contender = make_contender(variant, believed, start);
   // Time of the processor, not of the clock on the wall: other programs take their turns.
   const std::clock_t begin = std::clock();
-  replay_deeper(*contender, trial, kLineBytes * (place % kLinesInPage));
+  replay_at(*contender, trial, place);
   const auto elapsed = static_cast<double>(std::clock() - begin);
   return elapsed * (1e9 / CLOCKS_PER_SEC) / to_seconds(trial.imu.back().time);
 }

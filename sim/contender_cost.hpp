@@ -14,8 +14,8 @@ namespace leeway::sim {
 /// Of one whole replay by the variant's filter, per second of IMU data. Where in a page of memory
 /// the filter lies, beside where its stack lies, can double it: processors take two addresses that
 /// agree in their last 12 bits for one.
-/// @param place  of the stack in its page, by cache lines; others for other runs, so that the median
-///               is of all
+/// @param place  how far the stack is beyond the filter in their pages, in cache lines: alike for
+///               what is compared, and others in other rounds
 double timed_ns_per_s(const Variant& variant, const EkfConfig& believed, const TrialStart& start,
                       const RecordedTrial& trial, std::size_t place);
 
