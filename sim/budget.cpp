@@ -54,9 +54,7 @@ class Budgeting {
     const std::vector<ModelTerm> dropped =
         cheapest_terms(plan_, prediction_, full_, result_.terms, options_.repeat);
     report(0.3);
-    for (TermBudget& term : result_.terms) {
-      term.is_kept = std::find(dropped.begin(), dropped.end(), term.term) == dropped.end();
-    }
+    mark(dropped);
     choose_models(dropped);
     measure();
     price_models();
@@ -99,6 +97,16 @@ class Budgeting {
     }
   }
 
+  void mark(const std::vector<ModelTerm>& dropped) {
+    std::vector<ModelTerm> all = dropped;
+    for (const ModelTerm term : dropped) {
+      for (const ModelTerm implied : implied_by(term)) all.push_back(implied);
+    }
+    for (TermBudget& term : result_.terms) {
+      term.is_kept = std::find(all.begin(), all.end(), term.term) == all.end();
+    }
+  }
+
   std::array<ModelBudget*, 4> models() {
     return {&result_.full, &result_.standard, &result_.at_full_rate, &result_.reduced};
   }
@@ -129,7 +137,10 @@ class Budgeting {
     const auto accuracies = measured(cases, options_.threads, part(0.3, 0.9));
     auto next = accuracies.begin();
     for (ModelBudget* model : models()) model->measured = *next++;
-    for (TermBudget& term : result_.terms) term.measured_m = (next++)->difference_m;
+    for (TermBudget& term : result_.terms) {
+      term.measured_m = next->difference_m;
+      term.diverged = (next++)->figures.diverged;
+    }
   }
 
   void price_models() {
@@ -159,9 +170,10 @@ class Budgeting {
 
 }  // namespace
 
-bool agrees(double predicted_m, double measured_m, double limit_m) {
-  const double apart_m = std::abs(predicted_m - measured_m);
-  return apart_m <= kAgreesWithin * measured_m || apart_m <= kAgreesWithinLimit * limit_m;
+bool agrees(const TermBudget& term, double limit_m) {
+  if (!std::isfinite(term.predicted_m)) return term.diverged > 0;
+  const double apart_m = std::abs(term.predicted_m - term.measured_m);
+  return apart_m <= kAgreesWithin * term.measured_m || apart_m <= kAgreesWithinLimit * limit_m;
 }
 
 Budget budget(const Scene& scene, const BudgetOptions& options) {

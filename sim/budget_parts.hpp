@@ -17,6 +17,9 @@ namespace leeway::sim {
 /// Of the terms that no filter models: the errors of the sensors that they are.
 std::vector<ErrorSource> sources_of(ModelTerm term);
 
+/// What is left out with it.
+std::vector<ModelTerm> implied_by(ModelTerm term);
+
 /// Whether a choice may leave it out. Lever arm and latency are facts of the installation and save
 /// nothing or little; float can lose P altogether; what no filter models is left out already.
 bool may_be_dropped(ModelTerm term);

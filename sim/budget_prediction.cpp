@@ -62,12 +62,6 @@ PredictedAccuracy no_numbers() {
   return {kNan, kNan, kNan, kNan, kNan, false};
 }
 
-bool is_positive(const ModelPass& pass) {
-  return std::all_of(pass.epochs.begin(), pass.epochs.end(), [](const ModelPass::Epoch& epoch) {
-    return std::isfinite(expected_nees(epoch.claimed, epoch.claimed));
-  });
-}
-
 }  // namespace
 
 struct BudgetPrediction::Track {
@@ -129,7 +123,7 @@ BudgetPrediction::~BudgetPrediction() = default;
 
 PredictedAccuracy BudgetPrediction::of(const FilterModel& model) const {
   const ModelPass pass = model_pass(track_->path, model);
-  if (!is_positive(pass)) return no_numbers();
+  if (!pass.is_positive) return no_numbers();
   PredictionSums sums;
   track_->run(model, pass,
               [&sums](const PairedCovariance& pair, const ModelPass::Epoch& epoch,

@@ -213,6 +213,23 @@ std::vector<ErrorSource> sources_of(ModelTerm term) {
   }
 }
 
+std::vector<ModelTerm> implied_by(ModelTerm term) {
+  switch (term) {
+    case ModelTerm::kJ2:
+      return {ModelTerm::kNormalGravity};
+    case ModelTerm::kSecondOrder:
+      return {ModelTerm::kConing, ModelTerm::kSculling};
+    case ModelTerm::kFifthRate:
+      return {ModelTerm::kFullRate};
+    case ModelTerm::kTenthCovariance:
+      return {ModelTerm::kEachCovariance};
+    case ModelTerm::kBiasDrive:
+      return {ModelTerm::kBiasDecay};
+    default:
+      return {};
+  }
+}
+
 bool may_be_dropped(ModelTerm term) {
   return term != ModelTerm::kDoublePrecision && term != ModelTerm::kLeverArm &&
          term != ModelTerm::kLatency && sources_of(term).empty();

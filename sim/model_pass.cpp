@@ -1,11 +1,13 @@
 #include "model_pass.hpp"
 
+#include <cmath>
 #include <optional>
 
 #include "leeway/filters/covariance_track.hpp"
 #include "leeway/filters/gnss_measurement.hpp"
 #include "leeway/filters/symmetric_kernel.hpp"
 #include "scene_covariance.hpp"
+#include "trial_parts.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -131,6 +133,8 @@ class Pass {
     const FixRows rows = fix_rows(path_, increment, model_.config.lever_arm_b_m, weight);
     state_.covariance.flush(noise_);
     const FixGain gain = take(state_.covariance.kernel(), rows.H);
+    const ErrorMatrix P = state_.covariance.kernel().matrix();
+    if (!std::isfinite(expected_nees(P, P))) result_.is_positive = false;
     const Eigen::Vector3d& lever = path_.plan.scene().gnss.errors.lever_arm_b_m;
     const FixRows truth = fix_rows(path_, increment, lever, weight);
     const Eigen::Matrix3d C_ne =

@@ -38,6 +38,7 @@ struct ModelPass {
   };
   std::vector<FixGain> gains{};  ///< of arriving_fixes()
   std::vector<Epoch> epochs{};   ///< at the arrival of those that are scored
+  bool is_positive{true};        ///< P, after every fix
 };
 
 /// The mean error is what single steps of the model's strapdown on true increments miss the path by,

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace leeway::cli {
@@ -14,8 +15,9 @@ double cost_of(const sim::TermBudget& term) {
   return term.cost ? term.cost->median_ns_per_s : kNan;
 }
 
-std::string agreement(const sim::TermBudget& term, double limit_m) {
-  return sim::agrees(term.predicted_m, term.measured_m, limit_m) ? "" : "apart";
+std::string remark(const sim::TermBudget& term, double limit_m) {
+  if (!std::isfinite(term.predicted_m)) return "P not positive";
+  return sim::agrees(term, limit_m) ? "" : "apart";
 }
 
 void print_conditions(const sim::Budget& budget, int repeat) {
@@ -34,13 +36,14 @@ void print_terms(const sim::Budget& budget) {
   fmt::print(
       "\nWhat each term of the full model is worth: RMS of the difference that its substitute "
       "makes, horizontally\n");
-  Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<", "cost, ns/s",
-               "<in the reduced model"});
+  Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark", "diverged",
+               "cost, ns/s", "<in the reduced model"});
   for (const sim::TermBudget& term : budget.terms) {
     table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
                number(term.predicted_m, 5), number(term.measured_m, 5),
                number(term.predicted_m / term.measured_m, 2),
-               agreement(term, budget.scene.budget.limit_m), number(cost_of(term), 0),
+               remark(term, budget.scene.budget.limit_m), fmt::format("{}", term.diverged),
+               number(cost_of(term), 0),
                !term.cost ? "unmodelled" : term.is_kept ? "kept" : "dropped"});
   }
   table.print();
@@ -108,7 +111,8 @@ Json budget_json(const sim::Budget& budget) {
                      {"substitute", sim::substitute(term.term)},
                      {"predicted_m", term.predicted_m},
                      {"measured_m", term.measured_m},
-                     {"agrees", sim::agrees(term.predicted_m, term.measured_m, limit_m)},
+                     {"agrees", sim::agrees(term, limit_m)},
+                     {"trials_diverged", term.diverged},
                      {"cost_ns_per_s", cost_of(term)},
                      {"kept", term.cost.has_value() && term.is_kept}});
   }

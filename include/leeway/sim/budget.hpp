@@ -3,6 +3,7 @@
 /// predicted and measured, what it costs, and the cheapest filter that keeps the scene's limit.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -81,8 +82,10 @@ struct MeasuredAccuracy {
 
 struct TermBudget {
   ModelTerm term{};
-  double predicted_m{};            ///< contribution: see PredictedAccuracy::difference_m
-  double measured_m{};             ///< likewise
+  double predicted_m{};  ///< contribution: PredictedAccuracy::difference_m; NaN: P would not stay
+                         ///< positive without the term, and the filter would be lost
+  double measured_m{};   ///< likewise
+  std::int64_t diverged{0};        ///< trials without the term with an error beyond ten claimed sigmas
   std::optional<Cost> cost{};      ///< that the full model pays for it; none: nothing to save
   bool is_kept{true};              ///< in the reduced model
 };
@@ -94,8 +97,9 @@ struct ModelBudget {
   Cost cost{};
 };
 
-/// Whether prediction and measurement agree: within 20 % of it, or within 1 % of the limit.
-bool agrees(double predicted_m, double measured_m, double limit_m);
+/// Whether prediction and measurement agree: within 20 % of it, or within 1 % of the limit; or the
+/// filter would be lost, and some trials were.
+bool agrees(const TermBudget& term, double limit_m);
 
 struct Budget {
   Scene scene{};  ///< as it was run
