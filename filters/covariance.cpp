@@ -23,20 +23,22 @@ struct BiasDrive {
   double tau_s;
 };
 
-BiasDrive bias_drive(const TriadErrorModel& triad) {
+BiasDrive bias_drive(const TriadErrorModel& triad, BiasState state) {
   const double infinity = std::numeric_limits<double>::infinity();
   const GaussMarkov& in_run = triad.in_run;
-  if (in_run.sigma == 0.0 || std::isinf(in_run.tau_s)) return {0.0, infinity};
+  const bool is_driven = state == BiasState::kModelled || state == BiasState::kRandomWalk;
+  if (!is_driven || in_run.sigma == 0.0 || std::isinf(in_run.tau_s)) return {0.0, infinity};
   const double density = 2.0 * in_run.sigma * in_run.sigma / in_run.tau_s;
-  return {density, triad.bias_sigma > 0.0 ? infinity : in_run.tau_s};
+  const bool decays = state == BiasState::kModelled && triad.bias_sigma == 0.0;
+  return {density, decays ? in_run.tau_s : infinity};
 }
 
 }  // namespace
 
-ProcessNoise process_noise(const ImuErrorModel& model) {
+ProcessNoise process_noise(const ImuErrorModel& model, const BiasStates& biases) {
   validate(model);
-  const BiasDrive a = bias_drive(model.accelerometer);
-  const BiasDrive g = bias_drive(model.gyro);
+  const BiasDrive a = bias_drive(model.accelerometer, biases.accelerometer);
+  const BiasDrive g = bias_drive(model.gyro, biases.gyro);
   ProcessNoise noise;
   noise.attitude_rad2_per_s = model.gyro.noise_density * model.gyro.noise_density;
   noise.velocity_m2_per_s3 = model.accelerometer.noise_density * model.accelerometer.noise_density;

@@ -137,6 +137,12 @@ Eigen::Matrix<double, N, 1> correction_by(Eigen::Matrix<double, N, N>& P, const 
   return x;
 }
 
+/// Of biases that are no states the variance is zero.
+bool has_positive_variances(const ErrorMatrix& P) {
+  return P.diagonal().head<kBa>().minCoeff() > 0.0 &&
+         P.diagonal().tail<kErrorStates - kBa>().minCoeff() >= 0.0;
+}
+
 double nis_of(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& S) {
   return Cholesky<3>(S).normalized_square(innovation);
 }
@@ -150,7 +156,7 @@ void validate(const EkfConfig& config, const Estimate& estimate) {
 
 Ekf::Ekf(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P)
     : config_(config),
-      noise_(process_noise(config.imu)),
+      noise_(process_noise(config.imu, config.biases)),
       strapdown_step_(strapdown_function(config.strapdown)),
       estimate_(estimate),
       P_(P) {
@@ -174,7 +180,9 @@ void Ekf::predict(const ImuIncrement& inc) {
 
   // Once for each Phi: over the way of a covariance interval it changes by 3 parts of way / 6370
   // km.
-  if (covariance_is_current()) gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
+  if (covariance_is_current() && config_.gravity_gradient) {
+    gravity_gradient_e_ = gravity_gradient_e(estimate_.nav.r_e_m);
+  }
 
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
 
@@ -302,7 +310,7 @@ UpdateReport Ekf::update(const GnssFix& fix, const FixTrust& trust) {
   if (report.outcome != UpdateReport::Outcome::kFused) return report;
   fuse(m, weights, trust.held);
   if (fix.position) last_position_fix_ = fix.time;
-  report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
+  report.covariance_positive = has_positive_variances(P_);
   return report;
 }
 
@@ -310,7 +318,7 @@ UpdateReport Ekf::update(const Measurement& m, Held held) {
   UpdateReport report = judge(m);
   if (report.outcome != UpdateReport::Outcome::kFused) return report;
   fuse(m, Eigen::Matrix<double, 6, 1>::Ones(), held);
-  report.covariance_positive = P_.diagonal().minCoeff() > 0.0;
+  report.covariance_positive = has_positive_variances(P_);
   return report;
 }
 
@@ -417,18 +425,19 @@ void Ekf::flush() {
 }
 
 ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sigma,
-                               const ImuErrorModel& imu) {
+                               const ImuErrorModel& imu, const BiasStates& biases) {
   const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m));
   const Eigen::Vector3d psi_n(sigma.tilt_rad, sigma.tilt_rad, sigma.heading_rad);
-  const auto variance = [](const TriadErrorModel& triad) {
+  const auto variance = [](const TriadErrorModel& triad, BiasState state) {
+    if (state == BiasState::kNone) return 0.0;
     return triad.bias_sigma * triad.bias_sigma + triad.in_run.sigma * triad.in_run.sigma;
   };
   ErrorMatrix P = ErrorMatrix::Zero();
   P.block<3, 3>(kPsi, kPsi) = C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
   P.diagonal().segment<3>(kDv).setConstant(sigma.velocity_mps * sigma.velocity_mps);
   P.diagonal().segment<3>(kDr).setConstant(sigma.position_m * sigma.position_m);
-  P.diagonal().segment<3>(kBa).setConstant(variance(imu.accelerometer));
-  P.diagonal().segment<3>(kBg).setConstant(variance(imu.gyro));
+  P.diagonal().segment<3>(kBa).setConstant(variance(imu.accelerometer, biases.accelerometer));
+  P.diagonal().segment<3>(kBg).setConstant(variance(imu.gyro, biases.gyro));
   return P;
 }
 

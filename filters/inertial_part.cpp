@@ -6,7 +6,7 @@
 namespace leeway {
 
 InertialPart::InertialPart(const EkfConfig& config, const Estimate& estimate)
-    : noise_(process_noise(config.imu)),
+    : noise_(process_noise(config.imu, config.biases)),
       strapdown_step_(strapdown_function(config.strapdown)),
       lever_arm_b_m_(config.lever_arm_b_m),
       estimate_(estimate) {

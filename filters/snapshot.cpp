@@ -60,7 +60,8 @@ std::uint32_t fingerprint(NavigatorConfig c) {
   }
   StrapdownPolicy& strapdown = c.filter.strapdown;
   archive(strapdown.scheme, strapdown.gravity, strapdown.rotation, c.filter.lever_arm_b_m,
-          c.filter.gnss_correlation_s, c.filter.gate_probability, c.filter.covariance_interval_s);
+          c.filter.gnss_correlation_s, c.filter.gate_probability, c.filter.covariance_interval_s,
+          c.filter.gravity_gradient, c.filter.biases.accelerometer, c.filter.biases.gyro);
   AlignmentConfig& a = c.alignment;
   archive(a.heading_from_course, a.min_speed_mps, a.sideslip_rad, a.tilt_floor_rad,
           a.max_fix_interval_s, a.rest_speed_mps, a.rest_turn_rad, a.min_level_s, a.min_rest_s);

@@ -23,6 +23,13 @@ ImuIncrement increment_between(const ImuSample& from, const ImuSample& to, RateM
   return inc;
 }
 
+void append(ImuIncrement& sum, const ImuIncrement& later) {
+  sum.time = later.time;
+  sum.dt_s += later.dt_s;
+  sum.dtheta_b_rad += later.dtheta_b_rad;
+  sum.dv_b_mps += later.dv_b_mps;
+}
+
 std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& inc, Time t) {
   const double after_s = to_seconds(inc.time - t);
   const double before_fraction = (inc.dt_s - after_s) / inc.dt_s;

@@ -12,10 +12,19 @@
 namespace leeway {
 namespace {
 
+/// The Earth's rate as the attitude sees it, and as Coriolis does: about z in ECEF.
 template <EarthRotation rotation>
-Eigen::Vector3d earth_turn_rate_e() {
-  return rotation == EarthRotation::kOn ? earth_rotation_e_radps() : Eigen::Vector3d::Zero();
-}
+constexpr double kTurnRadps =
+    rotation == EarthRotation::kOn || rotation == EarthRotation::kTurnAlone
+        ? wgs84::kRotationRateRadps
+        : 0.0;
+template <EarthRotation rotation>
+constexpr double kCoriolisRadps =
+    rotation == EarthRotation::kOn || rotation == EarthRotation::kCoriolisAlone
+        ? wgs84::kRotationRateRadps
+        : 0.0;
+
+Eigen::Vector3d about_z_e(double rate) { return {0.0, 0.0, rate}; }
 
 /// An increment in registers.
 struct Increment {
@@ -36,10 +45,18 @@ struct PairTerms {
   Triple sculling_b_mps{};
 };
 
+template <Scheme scheme>
 [[gnu::always_inline]] inline PairTerms pair_terms(const Increment& inc, const Increment& last) {
   const double factor = inc.dt_s * inc.dt_s / (6.0 * last.dt_s * (last.dt_s + inc.dt_s));
-  return {factor * cross(last.dtheta_b, inc.dtheta_b),
-          factor * (cross(last.dtheta_b, inc.dv_b) + cross(last.dv_b, inc.dtheta_b))};
+  PairTerms terms;
+  if constexpr (scheme != Scheme::kSculling) {
+    terms.coning_b_rad = factor * cross(last.dtheta_b, inc.dtheta_b);
+  }
+  if constexpr (scheme != Scheme::kConing) {
+    terms.sculling_b_mps =
+        factor * (cross(last.dtheta_b, inc.dv_b) + cross(last.dv_b, inc.dtheta_b));
+  }
+  return terms;
 }
 
 /// Position change beyond the trapezoid when the acceleration is linear through two increments:
@@ -58,14 +75,15 @@ struct Curvature {
 /// [seed (3)-(8)]; the semi-implicit variant takes the position from the new velocity.
 template <GravityModel gravity, EarthRotation rotation, bool position_from_new_velocity>
 StrapdownStep euler_step(NavState& state, const ImuIncrement& inc) {
-  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
+  const Eigen::Vector3d turn_e = about_z_e(kTurnRadps<rotation>);
+  const Eigen::Vector3d coriolis_e = about_z_e(2.0 * kCoriolisRadps<rotation>);
   const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
   const Eigen::Vector3d dtheta_eb_b =
-      inc.dtheta_b_rad - inc.dt_s * (C_eb.transpose() * omega_ie_e);  // [seed (3)]
+      inc.dtheta_b_rad - inc.dt_s * (C_eb.transpose() * turn_e);  // [seed (3)]
   const Eigen::Vector3d dv_f_e = C_eb * inc.dv_b_mps;                 // [seed (4)]
   const Eigen::Vector3d v_old_e = state.v_e_mps;
   state.v_e_mps += dv_f_e + inc.dt_s * (gravity_e<gravity>(state.r_e_m) -
-                                        2.0 * omega_ie_e.cross(v_old_e));  // [seed (5)-(7)]
+                                        coriolis_e.cross(v_old_e));  // [seed (5)-(7)]
   state.r_e_m += inc.dt_s * (position_from_new_velocity ? state.v_e_mps : v_old_e);  // [seed (8)]
   state.q_eb = turned(Eigen::Vector3d::Zero(), state.q_eb, dtheta_eb_b);
   return {C_eb, dv_f_e};
@@ -92,7 +110,7 @@ template <GravityModel gravity>
 template <GravityModel gravity, EarthRotation rotation>
 [[gnu::always_inline]] inline Triple velocity_change(const Triple& r_e_m, const Triple& v_e_mps,
                                                      const Triple& dv_f_e_mps, double dt_s) {
-  constexpr double kOmega = rotation == EarthRotation::kOn ? wgs84::kRotationRateRadps : 0.0;
+  constexpr double kOmega = kCoriolisRadps<rotation>;
   const Triple pushed = dv_f_e_mps + dt_s * gravity_of<gravity>(r_e_m + 0.5 * dt_s * v_e_mps);
   const Triple v_mid = v_e_mps + 0.5 * (pushed - turn_about_z(2.0 * dt_s * kOmega, v_e_mps));
   return pushed - turn_about_z(2.0 * dt_s * kOmega, v_mid);
@@ -101,7 +119,7 @@ template <GravityModel gravity, EarthRotation rotation>
 template <GravityModel gravity, EarthRotation rotation>
 StrapdownStep trapezoid_step(NavState& state, const ImuIncrement& inc) {
   const Eigen::Matrix3d C_old = state.q_eb.toRotationMatrix();
-  state.q_eb = turned(-inc.dt_s * earth_turn_rate_e<rotation>(), state.q_eb, inc.dtheta_b_rad);
+  state.q_eb = turned(about_z_e(-inc.dt_s * kTurnRadps<rotation>), state.q_eb, inc.dtheta_b_rad);
   const Eigen::Matrix3d C_mean = 0.5 * (C_old + state.q_eb.toRotationMatrix());
   const Eigen::Vector3d dv_f_e = C_mean * inc.dv_b_mps;
   const Eigen::Vector3d dv_e = vector(velocity_change<gravity, rotation>(
@@ -145,7 +163,7 @@ struct IncrementMotion {
   const Triple x = C.x + (half.z * C.y - half.y * C.z);
   const Triple y = C.y + (half.x * C.z - half.z * C.x);
   const Triple z = C.z + (half.y * C.x - half.x * C.y);
-  step.C_eb_mean << x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z;
+  assign(step.C_eb_mean, x, y, z);
   assign(step.dv_f_e_mps, dv_f_e);
   return step;
 }
@@ -157,7 +175,7 @@ template <GravityModel gravity, EarthRotation rotation>
                                                                const Increment& inc,
                                                                const PairTerms& terms,
                                                                const Curvature& curve) {
-  constexpr double kOmega = rotation == EarthRotation::kOn ? wgs84::kRotationRateRadps : 0.0;
+  constexpr double kOmega = kTurnRadps<rotation>;
   const double dt = inc.dt_s;
   const Quadruple q = quadruple(state.q_eb);
   const Triple v = triple(state.v_e_mps);
@@ -181,13 +199,13 @@ template <GravityModel gravity, EarthRotation rotation>
 /// Each step looks back, so that every output is good; the second step of a pair also replaces what
 /// the first took from the past by what the pair itself shows. That makes the pair symmetric in
 /// time, and the scheme one order better than looking back alone.
-template <GravityModel gravity, EarthRotation rotation>
+template <Scheme scheme, GravityModel gravity, EarthRotation rotation>
 StrapdownStep two_sample_step(NavState& state, const ImuIncrement& newest, ImuHistory& history) {
   const Increment inc = increment(newest);
   const Increment last = increment(history.recent[0]);
   const bool look_back = history.count > 0;
   const bool settle = history.pair_open;
-  const PairTerms own = look_back ? pair_terms(inc, last) : PairTerms{};
+  const PairTerms own = look_back ? pair_terms<scheme>(inc, last) : PairTerms{};
   PairTerms applied = own;
   if (settle) {
     // Owed to the first step, carried over the turn since.
@@ -200,8 +218,9 @@ StrapdownStep two_sample_step(NavState& state, const ImuIncrement& newest, ImuHi
     applied.sculling_b_mps = own.sculling_b_mps + (sculling - cross(last.dtheta_b, sculling));
   }
   // The curvature needs no settling: over equal steps it telescopes to the change of acceleration.
+  const bool bends = look_back && scheme != Scheme::kConing;
   const Curvature curve =
-      look_back ? curvature(inc.dt_s, triple(history.dv_e_mps), last.dt_s) : Curvature{};
+      bends ? curvature(inc.dt_s, triple(history.dv_e_mps), last.dt_s) : Curvature{};
   const IncrementMotion motion = increment_motion<gravity, rotation>(state, inc, applied, curve);
 
   history.recent[0].time = newest.time;
@@ -272,12 +291,13 @@ struct StateRate {
 template <GravityModel gravity, EarthRotation rotation>
 StateRate state_rate(const NavState& state, const Eigen::Vector3d& omega_b,
                      const Eigen::Vector3d& f_b) {
-  const Eigen::Vector3d omega_ie_e = earth_turn_rate_e<rotation>();
+  const Eigen::Vector3d omega_ie_e = about_z_e(kTurnRadps<rotation>);
+  const Eigen::Vector3d coriolis_e = about_z_e(2.0 * kCoriolisRadps<rotation>);
   const Eigen::Quaterniond omega_b_q(0.0, omega_b.x(), omega_b.y(), omega_b.z());
   const Eigen::Quaterniond omega_e_q(0.0, omega_ie_e.x(), omega_ie_e.y(), omega_ie_e.z());
   StateRate rate;
   rate.q = 0.5 * ((state.q_eb * omega_b_q).coeffs() - (omega_e_q * state.q_eb).coeffs());
-  rate.v_e = state.q_eb.normalized() * f_b - 2.0 * omega_ie_e.cross(state.v_e_mps) +
+  rate.v_e = state.q_eb.normalized() * f_b - coriolis_e.cross(state.v_e_mps) +
              gravity_e<gravity>(state.r_e_m);
   rate.r_e = state.v_e_mps;
   return rate;
@@ -349,10 +369,10 @@ StrapdownStep motion_step(NavState& state, const ImuIncrement& inc, ImuHistory& 
     return trapezoid_step<gravity, rotation>(state, inc);
   } else if constexpr (scheme == Scheme::kOneSample) {
     return report(increment_motion<gravity, rotation>(state, increment(inc), {}, {}));
-  } else if constexpr (scheme == Scheme::kTwoSample) {
-    return two_sample_step<gravity, rotation>(state, inc, history);
-  } else {
+  } else if constexpr (scheme == Scheme::kRungeKutta4) {
     return runge_kutta_step<gravity, rotation>(state, inc, history);
+  } else {
+    return two_sample_step<scheme, gravity, rotation>(state, inc, history);
   }
 }
 
@@ -370,8 +390,17 @@ namespace {
 
 template <Scheme scheme, GravityModel gravity>
 StrapdownFunction with_rotation(EarthRotation rotation) {
-  return rotation == EarthRotation::kOn ? &strapdown_step<scheme, gravity, EarthRotation::kOn>
-                                        : &strapdown_step<scheme, gravity, EarthRotation::kOff>;
+  switch (rotation) {
+    case EarthRotation::kOff:
+      return &strapdown_step<scheme, gravity, EarthRotation::kOff>;
+    case EarthRotation::kTurnAlone:
+      return &strapdown_step<scheme, gravity, EarthRotation::kTurnAlone>;
+    case EarthRotation::kCoriolisAlone:
+      return &strapdown_step<scheme, gravity, EarthRotation::kCoriolisAlone>;
+    case EarthRotation::kOn:
+      break;
+  }
+  return &strapdown_step<scheme, gravity, EarthRotation::kOn>;
 }
 
 template <Scheme scheme>
@@ -399,6 +428,10 @@ StrapdownFunction strapdown_function(const StrapdownPolicy& policy) {
       return with_gravity<Scheme::kTrapezoid>(policy);
     case Scheme::kOneSample:
       return with_gravity<Scheme::kOneSample>(policy);
+    case Scheme::kConing:
+      return with_gravity<Scheme::kConing>(policy);
+    case Scheme::kSculling:
+      return with_gravity<Scheme::kSculling>(policy);
     case Scheme::kRungeKutta4:
       return with_gravity<Scheme::kRungeKutta4>(policy);
     case Scheme::kTwoSample:

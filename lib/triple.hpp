@@ -23,6 +23,18 @@ inline void assign(Eigen::Vector3d& to, const Triple& v) {
   to.z() = v.z;
 }
 
+/// By columns, two numbers at a time as they will be read: a load of two that were stored one by one
+/// waits for both.
+[[gnu::always_inline]] inline void assign(Eigen::Matrix3d& to, const Triple& x, const Triple& y,
+                                          const Triple& z) {
+  using Pair = Eigen::Array2d;
+  Eigen::Map<Pair>(to.data()) = Pair(x.x, x.y);
+  Eigen::Map<Pair>(to.data() + 2) = Pair(x.z, y.x);
+  Eigen::Map<Pair>(to.data() + 4) = Pair(y.y, y.z);
+  Eigen::Map<Pair>(to.data() + 6) = Pair(z.x, z.y);
+  to(2, 2) = z.z;
+}
+
 inline Triple operator+(const Triple& a, const Triple& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <set>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "campaign_sums.hpp"
 #include "contender.hpp"
+#include "contender_cost.hpp"
 #include "leeway/error.hpp"
 #include "leeway/sim/parallel.hpp"
 #include "leeway/sim/pareto.hpp"
@@ -64,15 +64,6 @@ ContenderRun scored_run(const Variant& variant, const EkfConfig& believed,
   return run;
 }
 
-/// The smallest value that 95 % of the values do not exceed.
-double r95_of(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto rank =
-      static_cast<std::ptrdiff_t>(std::ceil(0.95 * static_cast<double>(values.size())) - 1.0);
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
-
 Accuracy summary(const Variant& variant, const std::vector<ContenderRun>& runs) {
   CampaignSums sums;
   std::vector<double> horizontal_m;
@@ -107,39 +98,17 @@ std::vector<Accuracy> accuracy_in(const TrialPlan& plan, const std::vector<Varia
   return result;
 }
 
-/// Of one whole replay, per second of IMU data.
-double timed_ns_per_s(const Variant& variant, const EkfConfig& believed,
-                      const RecordedTrial& trial) {
-  const auto contender = make_contender(variant, believed, trial.start);
-  // Time of the processor, not of the clock on the wall: other programs take their turns.
-  const std::clock_t start = std::clock();
-  contender->replay(trial, {});
-  const auto elapsed = static_cast<double>(std::clock() - start);
-  return elapsed * (1e9 / CLOCKS_PER_SEC) / to_seconds(trial.imu.back().time);
-}
-
-/// The timed runs of all variants, each round all of them in turn: what slows the machine for a
-/// while slows all alike.
 std::vector<Cost> costs_of(const TrialPlan& plan, const std::vector<Variant>& variants, int rounds,
                            const std::function<void(double)>& progress) {
   Recordings recordings(plan, plan.scene().first_seed);
-  std::vector<std::vector<double>> ns_per_s(variants.size());
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t v = 0; v < variants.size(); ++v) {
-      const RecordedTrial& trial = recordings.at(variants[v].imu_divider);
-      ns_per_s[v].push_back(timed_ns_per_s(variants[v], plan.scene().filter, trial));
-    }
-    if (progress) progress(static_cast<double>(round + 1) / rounds);
+  std::vector<TimedRun> runs;
+  for (const Variant& variant : variants) {
+    runs.emplace_back([&plan, &recordings, variant](std::size_t place) {
+      const RecordedTrial& trial = recordings.at(variant.imu_divider);
+      return timed_ns_per_s(variant, plan.scene().filter, trial.start, trial, place);
+    });
   }
-  std::vector<Cost> costs;
-  for (std::vector<double>& times : ns_per_s) {
-    std::sort(times.begin(), times.end());
-    const std::size_t half = times.size() / 2;
-    const double median =
-        times.size() % 2 == 1 ? times[half] : 0.5 * (times[half - 1] + times[half]);
-    costs.push_back({median, times.front(), times.back()});
-  }
-  return costs;
+  return interleaved_costs(runs, rounds, progress);
 }
 
 std::vector<int> fitting_dividers(const TrialPlan& plan) {
@@ -238,6 +207,14 @@ std::function<void(double)> part(const CompareOptions& options, double from, dou
 }
 
 }  // namespace
+
+double r95_of(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto rank =
+      static_cast<std::ptrdiff_t>(std::ceil(0.95 * static_cast<double>(values.size())) - 1.0);
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
 
 std::string_view name(Consistency consistency) {
   constexpr std::array<std::string_view, 6> kNames{"no claim",    "consistent", "optimistic",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <optional>
 #include <utility>
 
 #include "leeway/filters/dense_kernel.hpp"
@@ -35,15 +36,25 @@ class Runner final : public Contender {
     auto next = trial.fixes.begin();
     for (std::size_t k = 0; k < trial.imu.size(); ++k) {
       filter_.predict(trial.imu[k]);
-      if (next == trial.fixes.end() || k != next->at) continue;
+      if (next == trial.fixes.end()) continue;
+      if (k == next->at && k < next->arrives) when_valid_ = filter_;
+      if (k != next->arrives) continue;
       if (observer && next->truth) observe(filter_, *next->truth, observer);
-      filter_.update(next->fix);
+      use(*next, trial);
       ++next;
     }
   }
 
  private:
+  /// A fix that arrives late acts at its own time: the filter goes back there and comes again.
+  void use(const RecordedTrial::Fix& fix, const RecordedTrial& trial) {
+    if (fix.arrives > fix.at) filter_ = *when_valid_;
+    filter_.update(fix.fix);
+    for (std::size_t k = fix.at + 1; k <= fix.arrives; ++k) filter_.predict(trial.imu[k]);
+  }
+
   Filter filter_;
+  std::optional<Filter> when_valid_{};
 };
 
 template <class Filter>

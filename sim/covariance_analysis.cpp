@@ -219,7 +219,7 @@ Scene perfectly_started(const Scene& scene) {
 std::string_view name(ErrorSource source) { return kSourceNames[static_cast<std::size_t>(source)]; }
 
 ErrorTrack error_track(const Scene& scene, double step_s) {
-  const ProcessNoise noise = process_noise(scene.filter.imu);
+  const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
   return {scene.trajectory,
           scene.duration_s,
           {std::min(step_s, step_limit_s(scene.imu)), TruthModel::needs_parameters(scene.imu),

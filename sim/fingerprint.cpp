@@ -73,6 +73,9 @@ void Bytes::add(const EkfConfig& filter) {
   add(filter.gnss_correlation_s);
   add(filter.gate_probability);
   add(filter.covariance_interval_s);
+  add(filter.gravity_gradient);
+  add(filter.biases.accelerometer);
+  add(filter.biases.gyro);
 }
 
 void Bytes::add(const NavState& nav) {
@@ -99,6 +102,7 @@ std::uint64_t fingerprint(const TrialPlan& plan) {
   bytes.add(scene.imu);
   bytes.add(scene.gnss);
   bytes.add(scene.filter);
+  bytes.add(scene.imu_divider);
   const InitialSigma& initial = plan.initial();
   for (const double sigma :
        {initial.tilt_rad, initial.heading_rad, initial.velocity_mps, initial.position_m}) {

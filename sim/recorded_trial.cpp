@@ -17,17 +17,18 @@ RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed) {
   trial.imu.reserve(plan.increments().size());
   trial.fixes.reserve(plan.fixes().size());
   auto next = plan.fixes().begin();
+  const auto last = plan.fixes().end();
   for (std::size_t k = 0; k < plan.increments().size(); ++k) {
     trial.imu.push_back(sensor.measure(plan.increments()[k]));
-    if (next == plan.fixes().end() || k != next->at) continue;
+    if (next == last || next->arrives >= plan.increments().size()) continue;
     const double t_s = to_seconds(trial.imu.back().time);
-    RecordedTrial::Fix fix{k, receiver.fix_at(t_s), {}};
+    if (k == next->at) trial.fixes.push_back({k, next->arrives, receiver.fix_at(t_s), {}});
+    if (k != next->arrives) continue;
     if (next->scored) {
-      fix.truth.emplace();
-      fix.truth->nav = truth_at(scene.trajectory, t_s).nav;
-      fix.truth->bias = {sensor.accelerometer_bias_mps2(), sensor.gyro_bias_radps()};
+      Estimate& truth = trial.fixes.back().truth.emplace();
+      truth.nav = truth_at(scene.trajectory, t_s).nav;
+      truth.bias = {sensor.accelerometer_bias_mps2(), sensor.gyro_bias_radps()};
     }
-    trial.fixes.push_back(fix);
     ++next;
   }
   return trial;
@@ -36,7 +37,9 @@ RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed) {
 bool fits(const TrialPlan& plan, int divider) {
   const auto n = static_cast<std::size_t>(divider);
   return std::all_of(plan.fixes().begin(), plan.fixes().end(),
-                     [n](const TrialPlan::Fix& fix) { return (fix.at + 1) % n == 0; });
+                     [n](const TrialPlan::Fix& fix) {
+                       return (fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0;
+                     });
 }
 
 RecordedTrial at_lower_rate(const RecordedTrial& trial, int divider) {
@@ -45,16 +48,23 @@ RecordedTrial at_lower_rate(const RecordedTrial& trial, int divider) {
   slower.imu.reserve(trial.imu.size() / n);
   for (std::size_t first = 0; first + n <= trial.imu.size(); first += n) {
     ImuIncrement sum = trial.imu[first];
-    for (std::size_t k = first + 1; k < first + n; ++k) {
-      sum.time = trial.imu[k].time;
-      sum.dt_s += trial.imu[k].dt_s;
-      sum.dtheta_b_rad += trial.imu[k].dtheta_b_rad;
-      sum.dv_b_mps += trial.imu[k].dv_b_mps;
-    }
+    for (std::size_t k = first + 1; k < first + n; ++k) append(sum, trial.imu[k]);
     slower.imu.push_back(sum);
   }
-  for (RecordedTrial::Fix& fix : slower.fixes) fix.at = (fix.at + 1) / n - 1;
+  for (RecordedTrial::Fix& fix : slower.fixes) {
+    fix.at = (fix.at + 1) / n - 1;
+    fix.arrives = (fix.arrives + 1) / n - 1;
+  }
   return slower;
+}
+
+RecordedTrial valid_at_arrival(const RecordedTrial& trial) {
+  RecordedTrial late = trial;
+  for (RecordedTrial::Fix& fix : late.fixes) {
+    fix.at = fix.arrives;
+    fix.fix.time = trial.imu[fix.arrives].time;
+  }
+  return late;
 }
 
 }  // namespace leeway::sim

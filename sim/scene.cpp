@@ -54,6 +54,8 @@ void validate(const Scene& scene) {
           scene.budget.limit_m, "> 0 and at most 1e6");
   require(scene.budget.last_s > 0.0 && scene.budget.last_s <= 1e6, "budget last_s",
           scene.budget.last_s, "> 0 and at most 1e6");
+  require(scene.imu_divider >= 1 && scene.imu_divider <= 1000, "imu_divider", scene.imu_divider,
+          "1 to 1000");
   require(scene.trials >= 1, "trials", scene.trials, ">= 1");
 }
 

@@ -25,8 +25,9 @@ Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors) {
 }
 
 SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
-    : noise_(process_noise(scene.filter.imu)),
-      P_(initial_covariance(start_of(scene), initial_sigma(scene), scene.filter.imu)),
+    : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
+      P_(initial_covariance(start_of(scene), initial_sigma(scene), scene.filter.imu,
+                            scene.filter.biases)),
       truth_(std::in_place, scene, without_biases(P_), noise_, by_source) {
   const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
   if (fixes_as_white && truth_->is_known_to(P_, noise_, fix_variance(scene.gnss.errors))) {

@@ -45,7 +45,7 @@ class SceneReader {
     });
     believe_the_receiver();
     root.table("filter", [this](TomlSection& section) {
-      read_filter(section, scene_.filter);
+      read_filter(section, scene_);
       section.table("imu",
                     [this](TomlSection& imu) { scene_.filter.imu = read_imu(imu, folder_).model; });
     });

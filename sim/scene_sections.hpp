@@ -33,8 +33,8 @@ NamedImuModel read_imu(TomlSection& section, const std::filesystem::path& folder
 /// [gnss]. Outages must be within the duration, or are left out beyond it.
 GnssScenario read_gnss(TomlSection& section, double duration_s, bool leave_out_late_outages);
 
-/// [filter], but for its IMU.
-void read_filter(TomlSection& section, EkfConfig& filter);
+/// [filter], but for its IMU: how the scene's filter runs.
+void read_filter(TomlSection& section, Scene& scene);
 
 /// [initial]: every key is required.
 InitialSigma read_initial(TomlSection& section);

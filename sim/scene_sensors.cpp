@@ -30,9 +30,6 @@ constexpr Quantity kVelocitySigma{"velocity_sigma", kSpeeds, between(1e-4, 20.0)
 constexpr Quantity kLeverArm{"lever_arm", kLengths, between(-100.0, 100.0)};
 constexpr Quantity kOutlierProbability{"outlier_probability", {}, zero_or(1e-9, 0.5)};
 constexpr Quantity kOutlierSigma{"outlier_sigma", kLengths, zero_or(0.1, 1e5)};
-constexpr Quantity kGateProbability{"gate_probability", {}, zero_or(1e-15, 0.1)};
-constexpr Quantity kCovarianceInterval{"covariance_interval", kTimes, zero_or(1e-4, 10.0)};
-constexpr Quantity kGnssCorrelation{"gnss_correlation", kTimes, zero_or(0.1, 1e5)};
 constexpr Quantity kTilt{"tilt", kAngles, zero_or(1e-7, 30.0 * kRadPerDeg)};
 constexpr Quantity kInitialHeading{"heading", kAngles, zero_or(1e-7, 180.0 * kRadPerDeg)};
 constexpr Quantity kInitialVelocity{"velocity", kSpeeds, zero_or(1e-4, 100.0)};
@@ -203,29 +200,6 @@ GnssScenario read_gnss(TomlSection& section, double duration_s, bool leave_out_l
     section.fail("position_sigma and correlated_sigma are both 0 on an axis: no receiver is exact");
   }
   return gnss;
-}
-
-void read_filter(TomlSection& section, EkfConfig& filter) {
-  constexpr std::array<std::string_view, 6> kSchemes{"explicit_euler", "semi_implicit_euler",
-                                                     "trapezoid",      "one_sample",
-                                                     "two_sample",     "runge_kutta_4"};
-  constexpr std::array kSchemeValues{Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler,
-                                     Scheme::kTrapezoid,     Scheme::kOneSample,
-                                     Scheme::kTwoSample,     Scheme::kRungeKutta4};
-  constexpr std::array<std::string_view, 3> kGravities{"constant", "j2", "normal"};
-  constexpr std::array kGravityValues{GravityModel::kConstant, GravityModel::kJ2,
-                                      GravityModel::kNormal};
-  set(section, kGateProbability, filter.gate_probability);
-  set(section, kCovarianceInterval, filter.covariance_interval_s);
-  set(section, kGnssCorrelation, filter.gnss_correlation_s);
-  if (const auto i = section.choice("scheme", kSchemes))
-    filter.strapdown.scheme = kSchemeValues[*i];
-  if (const auto i = section.choice("gravity", kGravities)) {
-    filter.strapdown.gravity = kGravityValues[*i];
-  }
-  if (const auto turns = section.boolean("earth_rotation")) {
-    filter.strapdown.rotation = *turns ? EarthRotation::kOn : EarthRotation::kOff;
-  }
 }
 
 InitialSigma read_initial(TomlSection& section) {

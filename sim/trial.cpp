@@ -31,6 +31,15 @@ const Scene& checked(const Scene& scene) {
   return scene;
 }
 
+/// Fixes are valid, and arrive, at the end of what the filter takes for one increment.
+void require_step(const Scene& scene, const TrialPlan::Fix& fix) {
+  const auto n = static_cast<std::size_t>(scene.imu_divider);
+  if ((fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0) return;
+  refuse("imu_divider is " + std::to_string(n) + ", but a fix is valid at increment " +
+         std::to_string(fix.at + 1) + " and arrives at " + std::to_string(fix.arrives + 1) +
+         ": both must be multiples of it");
+}
+
 Ekf started(const TrialPlan& plan, std::uint64_t seed) {
   const TrialStart start = trial_start(plan, seed);
   return {plan.scene().filter, start.estimate, start.P};
@@ -64,15 +73,17 @@ class Trial {
 TrialScore Trial::run() {
   const IncrementTable& truth = plan_.increments();
   auto next = plan_.fixes().begin();
+  const auto divider = static_cast<std::size_t>(plan_.scene().imu_divider);
+  ImuIncrement inc;
   for (std::size_t k = 0; k < truth.size() && score_.finite; ++k) {
-    const ImuIncrement inc = sensor_.measure(truth[k]);
+    append(inc, sensor_.measure(truth[k]));
+    if ((k + 1) % divider != 0) continue;
     filter_.predict(inc);
-    if (without_fix_) {
-      without_fix_->predict(inc);
-      if (k == arrives_) {
-        score(*without_fix_);
-        without_fix_.reset();
-      }
+    if (without_fix_) without_fix_->predict(inc);
+    inc = ImuIncrement{};
+    if (without_fix_ && k == arrives_) {
+      score(*without_fix_);
+      without_fix_.reset();
     }
     if (next != plan_.fixes().end() && k == next->at) take_fix(*next++);
   }
@@ -127,6 +138,7 @@ TrialPlan::TrialPlan(const Scene& scene, std::optional<double> score_last_s, int
                  fix.arrives < increments_.size() && (scored == 0 || fix.at >= last_arrives);
     if (fix.scored) last_arrives = fix.arrives;
     if (fix.scored) ++scored;
+    require_step(scene, fix);
     fixes_.push_back(fix);
   }
   if (scored == 0) {

@@ -27,12 +27,38 @@ Estimate drawn_start(const Estimate& truth, const ErrorMatrix& P, Random random)
   return estimate;
 }
 
-/// x^T P^-1 x in units of the sigmas, which differ by 1e9; NaN unless P is positive.
+/// P in units of its sigmas, which differ by 1e9. A bias of zero variance is no state of the filter:
+/// it has no sigma, and 1 on the diagonal.
+struct ScaledCovariance {
+  ErrorVector per_sigma;
+  Eigen::LLT<ErrorMatrix> llt;
+  double to_all_states;  // from the number of states there are to 15
+
+  explicit ScaledCovariance(const ErrorMatrix& P) {
+    ErrorMatrix correlation = P;
+    int states = 0;
+    for (int i = 0; i < kErrorStates; ++i) {
+      const bool is_state = i < kBa || P(i, i) != 0.0;
+      states += is_state ? 1 : 0;
+      per_sigma(i) = is_state ? 1.0 / std::sqrt(P(i, i)) : 0.0;
+    }
+    correlation = per_sigma.asDiagonal() * correlation * per_sigma.asDiagonal();
+    for (int i = 0; i < kErrorStates; ++i) {
+      if (per_sigma(i) == 0.0) correlation(i, i) = 1.0;
+    }
+    llt.compute(correlation);
+    to_all_states = static_cast<double>(kErrorStates) / states;
+  }
+
+  bool is_positive() const { return llt.info() == Eigen::Success; }
+};
+
+/// x^T P^-1 x; NaN unless P is positive. Of a filter with fewer states taken to 15 by their number.
 double normalized_square(const ErrorVector& x, const ErrorMatrix& P) {
-  const ErrorVector per_sigma = P.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<ErrorMatrix> llt(per_sigma.asDiagonal() * P * per_sigma.asDiagonal());
-  if (llt.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
-  return llt.matrixL().solve(per_sigma.cwiseProduct(x)).squaredNorm();
+  const ScaledCovariance scaled(P);
+  if (!scaled.is_positive()) return std::numeric_limits<double>::quiet_NaN();
+  return scaled.to_all_states *
+         scaled.llt.matrixL().solve(scaled.per_sigma.cwiseProduct(x)).squaredNorm();
 }
 
 /// NED axes of the local level frame at a position.
@@ -52,12 +78,21 @@ void score_position_claim(TrialScore& score, const Eigen::Vector3d& error_n_m,
 
 }  // namespace
 
+double expected_nees(const ErrorMatrix& second_moment, const ErrorMatrix& P) {
+  const ScaledCovariance scaled(P);
+  if (!scaled.is_positive()) return std::numeric_limits<double>::quiet_NaN();
+  const ErrorMatrix moment =
+      scaled.per_sigma.asDiagonal() * second_moment * scaled.per_sigma.asDiagonal();
+  return scaled.to_all_states * scaled.llt.solve(moment).trace();
+}
+
 TrialStart trial_start(const TrialPlan& plan, std::uint64_t seed) {
   const ImuErrorModel& believed = plan.scene().filter.imu;
   Estimate start;
   start.nav = truth_at(plan.scene().trajectory, 0.0).nav;
   start.bias = {believed.accelerometer.bias, believed.gyro.bias};
-  const ErrorMatrix P = initial_covariance(start, plan.initial(), believed);
+  const ErrorMatrix P =
+      initial_covariance(start, plan.initial(), believed, plan.scene().filter.biases);
   // What the sensors draw beyond the known biases is already the error of the start.
   ErrorMatrix P_nav = P;
   P_nav.bottomRightCorner<6, 6>().setZero();

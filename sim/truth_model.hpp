@@ -12,6 +12,11 @@ namespace leeway::sim {
 
 class TruthModel {
  public:
+  /// E[p p^T] of the parameters of each source that has any.
+  using ParameterMoment = Eigen::Matrix<double, kSensorParameters, kSensorParameters>;
+  using ParameterMoments = std::vector<std::pair<ErrorSource, ParameterMoment>>;
+  static ParameterMoments parameter_moments(const ImuErrorModel& imu);
+
   /// @param by_source  keeps the sources apart; else they share one covariance
   TruthModel(const Scene& scene, const ErrorMatrix& initial_nav, const ProcessNoise& filter,
              bool by_source);
@@ -29,11 +34,6 @@ class TruthModel {
   ErrorBudget budget(const Eigen::Matrix3d& C_en) const;
 
  private:
-  /// E[p p^T] of the parameters of each source that has any.
-  using ParameterMoment = Eigen::Matrix<double, kSensorParameters, kSensorParameters>;
-  using ParameterMoments = std::vector<std::pair<ErrorSource, ParameterMoment>>;
-
-  static ParameterMoments parameter_moments(const ImuErrorModel& imu);
   void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias,
                  double filter_tau_s);
   static void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance& drift,

@@ -22,9 +22,9 @@ constexpr std::array kPrecisions{Precision::kFloat, Precision::kDouble};
 constexpr std::array kIntervalsS{0.0, 0.1, 1.0};
 
 std::string_view word(Scheme scheme) {
-  constexpr std::array<std::string_view, kAllSchemes.size()> kWords{
-      "explicit-euler", "semi-implicit-euler", "trapezoid",
-      "one-sample",     "two-sample",          "runge-kutta-4"};
+  constexpr std::array<std::string_view, 8> kWords{
+      "explicit-euler", "semi-implicit-euler", "trapezoid", "one-sample",
+      "two-sample",     "runge-kutta-4",       "coning",    "sculling"};
   return kWords[static_cast<std::size_t>(scheme)];
 }
 
@@ -34,7 +34,9 @@ std::string_view word(GravityModel gravity) {
 }
 
 std::string_view word(EarthRotation rotation) {
-  return rotation == EarthRotation::kOn ? "turning" : "still";
+  constexpr std::array<std::string_view, 4> kWords{"still", "turning", "turn-alone",
+                                                   "coriolis-alone"};
+  return kWords[static_cast<std::size_t>(rotation)];
 }
 
 std::string_view word(KernelForm kernel) {

@@ -36,6 +36,10 @@ enum class RateMeaning {
 /// The increment between two consecutive samples. @pre from.time < to.time.
 ImuIncrement increment_between(const ImuSample& from, const ImuSample& to, RateMeaning meaning);
 
+/// The same sensor read less often: the later increment is added to the earlier one, component by
+/// component. @pre later.time - later.dt_s = sum.time, or sum is new.
+void append(ImuIncrement& sum, const ImuIncrement& later);
+
 /// Splits an increment at t, the rates taken as constant within it. Used to apply a fix at its own
 /// time. @pre inc.time - inc.dt_s < t < inc.time.
 std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& inc, Time t);

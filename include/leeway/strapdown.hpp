@@ -23,10 +23,12 @@ enum class Scheme {
                        ///< intervals, third on unequal ones (default)
   kRungeKutta4,  ///< cubic rates through four increments, RK4: fourth order on any intervals; the
                  ///< reference to judge by, given six increments in a period of the motion
+  kConing,       ///< one sample + coning alone of what two samples add
+  kSculling,     ///< one sample + sculling and position curvature alone
 };
 
-/// Whether the Earth turns: rotation of the frame and Coriolis.
-enum class EarthRotation { kOff, kOn };
+/// Whether the Earth turns: rotation of the frame, which the attitude sees, and Coriolis.
+enum class EarthRotation { kOff, kOn, kTurnAlone, kCoriolisAlone };
 
 /// The recent past that a scheme looks back on. It survives a correction of the state, and is
 /// forgotten by itself when the next increment does not follow the last one.

@@ -50,7 +50,7 @@ void print_sigmas(const sim::CovariancePoint& worst) {
   table.print();
 }
 
-void print_budget(sim::ErrorBudget budget) {
+void print_sources(sim::ErrorBudget budget) {
   std::sort(budget.begin(), budget.end(), [](const auto& a, const auto& b) {
     return horizontal_m2(a.mean_sq_n_m2) > horizontal_m2(b.mean_sq_n_m2);
   });
@@ -82,7 +82,7 @@ void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   }
   print_sigmas(r.worst);
   fmt::print("\nWhere the true error comes from\n");
-  print_budget(r.budget);
+  print_sources(r.budget);
 }
 
 Json results_json(const sim::CovarianceAnalysis& r) {

@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   remember_command_line(argc, argv);
   add_interval_command(program, exit_code);
   add_analyze_command(program, exit_code);
+  add_budget_command(program, exit_code);
   add_campaign_command(program, exit_code);
   add_compare_command(program, exit_code);
   add_drift_command(program, exit_code);

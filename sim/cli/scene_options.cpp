@@ -6,6 +6,7 @@
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
 #include "leeway/sim/bias_model.hpp"
+#include "leeway/sim/filter_file.hpp"
 #include "leeway/sim/scene_file.hpp"
 #include "options.hpp"
 
@@ -50,6 +51,7 @@ sim::Scene changed_scene(const SceneChoice& choice) {
   if (!choice.metric.empty()) {
     scene.budget.metric = horizontal_metric_from_name(choice.metric);
   }
+  if (!choice.filter.empty()) sim::read_filter_file(choice.filter, scene);
   if (!choice.limits_m.empty()) scene.budget.limit_m = choice.limits_m.front();
   if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
   return scene;
@@ -90,6 +92,10 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
                  "what the biases of a Table 1 class do after turn-on: stay, or wander with a "
                  "correlation time of an hour")
       ->check(CLI::IsMember(names_of(sim::kBiasModels)));
+  app.add_option("--filter", choice.filter,
+                 "how the filter runs, in place of the scene's [filter]: a file that leeway budget "
+                 "--write made")
+      ->type_name("FILE.toml");
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->check(CLI::IsMember(names_of(kHorizontalMetrics)));
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")

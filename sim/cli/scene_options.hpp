@@ -20,6 +20,7 @@ struct SceneChoice {
   std::string bias{};               ///< empty: as the scene or the model has it
   std::string metric{};             ///< empty: the scene's
   std::vector<double> limits_m{};   ///< empty: the scene's
+  std::filesystem::path filter{};   ///< how the filter runs; empty: as the scene has it
   std::optional<double> at_s{};
   std::optional<double> interval_s{};
 };

@@ -22,9 +22,11 @@ using test::near;
 
 constexpr std::array kSchemes{Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler,
                               Scheme::kTrapezoid,     Scheme::kOneSample,
-                              Scheme::kTwoSample,     Scheme::kRungeKutta4};
+                              Scheme::kTwoSample,     Scheme::kRungeKutta4,
+                              Scheme::kConing,        Scheme::kSculling};
 constexpr std::array kGravities{GravityModel::kConstant, GravityModel::kJ2, GravityModel::kNormal};
-constexpr std::array kRotations{EarthRotation::kOff, EarthRotation::kOn};
+constexpr std::array kRotations{EarthRotation::kOff, EarthRotation::kOn, EarthRotation::kTurnAlone,
+                                EarthRotation::kCoriolisAlone};
 
 template <class F>
 void for_each_policy(const F& f) {
@@ -158,6 +160,40 @@ TEST_CASE("without the Earth's rotation neither frame nor Coriolis turns the res
   CHECK(error_m(EarthRotation::kOn) > 0.01);
 }
 
+TEST_CASE("turn and Coriolis, coning and sculling: each alone, and what they leave out adds up") {
+  const AnalyticMotion motion = test::rough_drive();
+  const auto end_of = [&](const StrapdownPolicy& policy) {
+    NavState state = motion.state(0.0);
+    ImuHistory history;
+    const StrapdownFunction step = strapdown_function(policy);
+    for (const ImuIncrement& inc :
+         increments(motion, times({1}, Duration{10'000'000}, std::chrono::seconds{10}))) {
+      step(state, inc, history);
+    }
+    return state.r_e_m;
+  };
+  const auto with_rotation = [&](EarthRotation rotation) {
+    return end_of({Scheme::kTwoSample, GravityModel::kNormal, rotation});
+  };
+  const Eigen::Vector3d still = with_rotation(EarthRotation::kOff);
+  const Eigen::Vector3d by_turn_m = with_rotation(EarthRotation::kTurnAlone) - still;
+  const Eigen::Vector3d by_coriolis_m = with_rotation(EarthRotation::kCoriolisAlone) - still;
+  const Eigen::Vector3d by_both_m = with_rotation(EarthRotation::kOn) - still;
+  CHECK(by_turn_m.norm() > 0.01);
+  CHECK(by_coriolis_m.norm() > 0.01);
+  // They act on each other by the Earth's turn in 10 s, 7e-4 rad.
+  CHECK(near(by_both_m, Eigen::Vector3d(by_turn_m + by_coriolis_m), 1e-3 * by_both_m.norm()));
+
+  const Eigen::Vector3d one = end_of({Scheme::kOneSample});
+  const Eigen::Vector3d by_coning_m = end_of({Scheme::kConing}) - one;
+  const Eigen::Vector3d by_sculling_m = end_of({Scheme::kSculling}) - one;
+  const Eigen::Vector3d by_pairs_m = end_of({Scheme::kTwoSample}) - one;
+  CHECK(by_coning_m.norm() > 1e-4);
+  CHECK(by_sculling_m.norm() > 1e-4);
+  // The attitude that coning leaves turns sculling's velocity: second order.
+  CHECK(near(by_pairs_m, Eigen::Vector3d(by_coning_m + by_sculling_m), 0.01 * by_pairs_m.norm()));
+}
+
 TEST_CASE("a coarser gravity model costs half its error times the time squared") {
   AnalyticMotion rest;
   rest.origin = {90.0 * kRadPerDeg, 0.0, 0.0};
@@ -279,6 +315,10 @@ TEST_CASE("the dispatch table holds the templates") {
            &strapdown_step<scheme, gravity, EarthRotation::kOff>));
     CHECK((strapdown_function({scheme, gravity, EarthRotation::kOn}) ==
            &strapdown_step<scheme, gravity, EarthRotation::kOn>));
+    CHECK((strapdown_function({scheme, gravity, EarthRotation::kTurnAlone}) ==
+           &strapdown_step<scheme, gravity, EarthRotation::kTurnAlone>));
+    CHECK((strapdown_function({scheme, gravity, EarthRotation::kCoriolisAlone}) ==
+           &strapdown_step<scheme, gravity, EarthRotation::kCoriolisAlone>));
   };
   const auto check_scheme = [&]<Scheme scheme>() {
     check.operator()<scheme, GravityModel::kConstant>();

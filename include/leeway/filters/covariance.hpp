@@ -33,11 +33,24 @@ inline ErrorVector noise_variance(const ProcessNoise& noise, double dt_s) {
   return variance;
 }
 
+/// How much of a triad's bias model the filter carries.
+enum class BiasState {
+  kModelled,    ///< as process_noise() has it (default)
+  kRandomWalk,  ///< the same drive without the decay: a state that needs no exponential
+  kConstant,    ///< as uncertain at the start, and constant
+  kNone,        ///< no bias: its state stays zero, and certain
+};
+
+struct BiasStates {
+  BiasState accelerometer{BiasState::kModelled};
+  BiasState gyro{BiasState::kModelled};
+};
+
 /// What the model means to the filter. An in-run bias without a turn-on part is a Gauss-Markov
 /// state. With one it is a random walk of the same drive: a decaying state would pull the constant
 /// part, which does not decay, towards zero.
 /// @throws Error when the model is invalid.
-ProcessNoise process_noise(const ImuErrorModel& model);
+ProcessNoise process_noise(const ImuErrorModel& model, const BiasStates& biases = {});
 
 /// P <- Phi (P + Q/2) Phi^T + Q/2 with Q = density * Phi.dt_s: the trapezoidal rule for the noise,
 /// exact to second order in dt, which needs no Q matrix.

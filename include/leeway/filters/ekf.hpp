@@ -23,6 +23,7 @@ namespace leeway {
 /// The defaults suit a car.
 struct EkfConfig {
   ImuErrorModel imu{automotive_mems_model()};
+  BiasStates biases{};
   StrapdownPolicy strapdown{};
   Eigen::Vector3d lever_arm_b_m{Eigen::Vector3d::Zero()};  ///< IMU to GNSS antenna, body axes
   /// Correlation time of the GNSS position error. Fixes closer together than this repeat much of
@@ -35,6 +36,8 @@ struct EkfConfig {
   /// P is propagated when this much time has accumulated in Phi, and before every update; the
   /// gravity gradient is that of the place where Phi begins. 0: at every increment.
   double covariance_interval_s{0.1};
+  /// Whether the error of the position changes gravity in Phi.
+  bool gravity_gradient{true};
 };
 
 /// Whether filters of any kind can begin with this.
@@ -196,9 +199,9 @@ class Ekf {
 };
 
 /// P from sigmas: tilt and heading about the axes of north-east-down at the estimate, bias sigmas
-/// from the model (turn-on and in-run together).
+/// from the model (turn-on and in-run together), zero where there is no state.
 ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sigma,
-                               const ImuErrorModel& imu);
+                               const ImuErrorModel& imu, const BiasStates& biases = {});
 
 /// Variance of a turn about the local vertical: of the heading.
 double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P);

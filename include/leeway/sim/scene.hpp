@@ -42,6 +42,7 @@ struct Scene {
   ImuErrorModel imu{};  ///< what the sensors are
   GnssScenario gnss{};
   EkfConfig filter{};                     ///< what the filter believes
+  int imu_divider{1};                     ///< so many increments are added to one for the filter
   std::optional<InitialSigma> initial{};  ///< absent: by levelling and gyrocompassing
   HorizontalBudget budget{};
   int trials{200};

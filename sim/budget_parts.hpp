@@ -1,0 +1,79 @@
+/// @file
+/// What the parts of budget() know of each other.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "contender_cost.hpp"
+#include "leeway/sim/budget.hpp"
+#include "leeway/sim/covariance_analysis.hpp"
+#include "leeway/sim/trial.hpp"
+#include "recorded_trial.hpp"
+
+namespace leeway::sim {
+
+/// Of the terms that no filter models: the errors of the sensors that they are.
+std::vector<ErrorSource> sources_of(ModelTerm term);
+
+/// What is left out with it.
+std::vector<ModelTerm> implied_by(ModelTerm term);
+
+/// Whether a choice may leave it out. Lever arm and latency are facts of the installation and save
+/// nothing or little; float can lose P altogether; what no filter models is left out already.
+bool may_be_dropped(ModelTerm term);
+
+/// Predicts by linear analysis; runs no filter. Safe to share between threads.
+class BudgetPrediction {
+ public:
+  /// @param plan  outlives this
+  BudgetPrediction(const TrialPlan& plan, const FilterModel& full);
+  ~BudgetPrediction();
+  BudgetPrediction(const BudgetPrediction&) = delete;
+  BudgetPrediction& operator=(const BudgetPrediction&) = delete;
+
+  PredictedAccuracy of(const FilterModel& model) const;
+
+  /// Root mean square that the sources add to the error of the full model.
+  double contribution_m(const std::vector<ErrorSource>& sources) const;
+
+ private:
+  struct Track;
+  std::unique_ptr<const Track> track_;
+};
+
+/// One thing to run in every trial: a filter, on the sensors of a plan.
+struct BudgetCase {
+  const TrialPlan* plan{};
+  FilterModel model{};
+};
+
+/// All cases on the same noise, trial by trial; the first is what the others are compared with.
+/// @param metric  of the first plan's scene
+std::vector<MeasuredAccuracy> measured(const std::vector<BudgetCase>& cases, int threads,
+                                       const std::function<void(double)>& progress);
+
+/// The costs of the models in the first trial of the plan, in their order, and of every model what
+/// it saves of the first one, run just before it.
+struct ModelCosts {
+  std::vector<Cost> costs{};
+  std::vector<Cost> savings{};
+};
+ModelCosts costs_of(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
+                    const std::function<void(double)>& progress);
+
+/// The scene with these errors of its sensors taken away, and every other random number the same.
+Scene without_sources(Scene scene, const std::vector<ErrorSource>& sources);
+
+/// The terms of the cheapest model found that keeps scene.budget and the honesty of the full one,
+/// by prediction.
+std::vector<ModelTerm> cheapest_terms(const TrialPlan& plan, const BudgetPrediction& prediction,
+                                      const FilterModel& full,
+                                      const std::vector<TermBudget>& terms, int rounds);
+
+/// Whether the reduced model keeps its promise as well as the full one: kHonesty.
+bool is_as_honest(double rms_over_sigma, double nees, double full_rms_over_sigma,
+                  double full_nees);
+
+}  // namespace leeway::sim

@@ -1,0 +1,19 @@
+/// @file
+/// How a budget is shown: tables and JSON. Part of the budget command.
+#pragma once
+
+#include <string>
+
+#include "leeway/sim/budget.hpp"
+#include "output.hpp"
+
+namespace leeway::cli {
+
+void print_budget(const sim::Budget& budget, int repeat);
+
+Json budget_json(const sim::Budget& budget);
+
+/// What the reduced filter is, for the top of its file.
+std::string budget_comment(const sim::Budget& budget);
+
+}  // namespace leeway::cli
