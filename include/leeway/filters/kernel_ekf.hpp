@@ -2,6 +2,8 @@
 /// The 15-state filter over any covariance kernel: what kernels are compared by.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -24,7 +26,13 @@ struct AdditiveError {
   }
 };
 
-/// Ekf without its gate, its monitors and the vehicle, on a covariance of any form. Allocates
+/// What a fix said to a filter that refuses none.
+struct FusedFix {
+  int dof{0};       ///< its components; 0: not usable, nothing was changed
+  double nis{0.0};  ///< normalized innovation squared, by the weights it was fused with
+};
+
+/// Ekf without its gate, its repairs and the vehicle, on a covariance of any form. Allocates
 /// nothing after construction beyond what the kernel does, which is nothing.
 /// @tparam Error  AdditiveError, or InvariantError (invariant_ekf.hpp): which error it is that P is
 /// of. They agree to first order.
@@ -43,6 +51,7 @@ class KernelEkf {
   void predict(const ImuIncrement& inc) {
     if (Phi_.dt_s == 0.0) gravity_gradient_e_ = gravity_gradient_e(estimate().nav.r_e_m);
     ErrorDynamics dynamics = inertial_.advance(inc);
+    step_s_ = inc.dt_s;
     dynamics.gravity_gradient_e = gravity_gradient_e_;
     if constexpr (requires { kernel_.propagate(dynamics, inertial_.noise()); }) {
       if (interval_s_ == 0.0 && is_flushed_) {
@@ -59,18 +68,19 @@ class KernelEkf {
 
   /// Fuses the fix, whatever it says. One that is not usable changes nothing.
   /// @pre fix.time equals estimate().nav.time.
-  void update(const GnssFix& fix) {
-    if (!is_usable(fix)) return;
+  FusedFix update(const GnssFix& fix) {
+    if (!is_usable(fix)) return {};
     flush();
     const WhiteMeasurement m = inertial_.white_measurement(fix, position_weight(fix.time));
     ErrorVector x_hat = ErrorVector::Zero();
-    kernel_.update(x_hat, m.H, m.z);
+    const double nis = kernel_.update(x_hat, m.H, m.z);
     inertial_.inject(Error::correction(x_hat));
     // The reset is the first factor of the next Phi: no kernel need know of it, and it costs none
     // a propagation.
     Phi_ = Error::reset(x_hat);
     is_flushed_ = false;
     if (fix.position) last_position_fix_ = fix.time;
+    return {static_cast<int>(m.H.rows()), nis};
   }
 
   const Estimate& estimate() const { return inertial_.estimate(); }
@@ -80,6 +90,24 @@ class KernelEkf {
     Kernel current = kernel_;
     if (!is_flushed_) current.propagate(Phi_, inertial_.noise());
     return current.matrix();
+  }
+
+  /// By how much of itself the process noise of one propagation is changed when the kernel's
+  /// numbers take it in, of the state where that is most. 1: it is lost to rounding. The state
+  /// grows too sure where this stays above a half for as long as the noise takes to matter.
+  double noise_rounding() const {
+    using Number = typename Kernel::Number;
+    const ErrorVector variance = covariance().diagonal();
+    const ErrorVector q = noise_variance(inertial_.noise(), 0.5 * std::max(interval_s_, step_s_));
+    double largest = 0.0;
+    for (int i = 0; i < kErrorStates; ++i) {
+      const auto before = static_cast<Number>(variance(i));
+      const auto added = static_cast<Number>(q(i));
+      if (!(added > 0)) continue;
+      const Number kept = (before + added) - before;
+      largest = std::max(largest, static_cast<double>(std::abs(kept / added - 1)));
+    }
+    return largest;
   }
 
  private:
@@ -96,6 +124,7 @@ class KernelEkf {
   }
 
   double interval_s_;
+  double step_s_{0.0};  // of the newest increment
   double gnss_correlation_s_;
   InertialPart inertial_;
   Kernel kernel_;

@@ -1,6 +1,6 @@
 /// @file
-/// The failure atlas: scenes that are each built to break a method, run against every way of running
-/// the filter, and what became of it.
+/// The failure atlas: scenes that are each built to break a method, run against every way of
+/// running the filter, and what became of it.
 #pragma once
 
 #include <cstddef>
@@ -21,9 +21,9 @@ enum class AtlasGroup {
   kFloatKernel,   ///< and in single
   kInvariant,
   kReset,
-  kStrapdown,    ///< mechanizations, without a filter
-  kInput,        ///< what stands before any filter: configuration, readers, time
-  kNotOffered,   ///< a method that the library does not have: what the scene shows failing
+  kStrapdown,   ///< mechanizations, without a filter
+  kInput,       ///< what stands before any filter: configuration, readers, time
+  kNotOffered,  ///< a method that the library does not have: what the scene shows failing
 };
 inline constexpr std::size_t kAtlasGroups = 9;
 

@@ -1,0 +1,7 @@
+#include "scenes.hpp"
+
+namespace leeway::sim {
+
+std::vector<AtlasScene> mechanization_scenes() { return {}; }
+
+}  // namespace leeway::sim
