@@ -25,12 +25,8 @@ std::vector<AtlasCell> run_antimeridian(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene antimeridian() {
-  return {"antimeridian",
-          "Across the antimeridian",
-          "error of the position",
-          "m",
-          crossing_limits(),
-          run_antimeridian};
+  return {"antimeridian",    "Across the antimeridian", "error of the position", "m",
+          crossing_limits(), run_antimeridian};
 }
 
 }  // namespace leeway::sim

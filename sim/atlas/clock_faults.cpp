@@ -77,8 +77,7 @@ std::vector<AtlasCell> run_clock_faults(const AtlasOptions& options) {
   for (const ClockFault& fault : faults()) {
     const auto spoilt = spoiled(trials, fault.spoil);
     const auto add = [&](const AtlasColumn& column, const std::vector<RecordedTrial>& inputs) {
-      for (const AtlasCell& cell :
-           scored({column}, scene.filter, inputs, fault.condition, score)) {
+      for (const AtlasCell& cell : scored({column}, scene.filter, inputs, fault.condition, score)) {
         cells.push_back(cell);
       }
     };

@@ -36,8 +36,8 @@ Scene crossing(const Geodetic& from, const Geodetic& to) {
   scene.duration_s = std::floor(scene.trajectory.duration_s);
   set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
   scene.filter.gnss_correlation_s = 0.0;
-  scene.initial = InitialSigma{
-      .tilt_rad = 3e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = 3.0};
+  scene.initial =
+      InitialSigma{.tilt_rad = 3e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = 3.0};
   return scene;
 }
 
@@ -75,7 +75,9 @@ AtlasCell crossed_in_latitude_and_longitude(const Scene& scene, const std::strin
   }
   return {AtlasGroup::kNotOffered,
           share > 0.0 ? "latitude and longitude/blended with fixes" : "latitude and longitude",
-          condition, (truth(increments.back()) - ned.r_e_m()).norm(), {}};
+          condition,
+          (truth(increments.back()) - ned.r_e_m()).norm(),
+          {}};
 }
 
 AtlasLimits crossing_limits() {

@@ -88,6 +88,15 @@ double delivered_rms_m(WatchedFilter& filter, const RecordedTrial& trial,
   return sums.horizontal_rms_m();
 }
 
+AtlasColumn patient_navigator() {
+  return {AtlasGroup::kNavigator, "Navigator/waits for 4 s",
+          [](const EkfConfig& config, const TrialStart& start) {
+            Navigator navigator({.filter = config, .timing = {.max_lateness_s = 4.0}});
+            navigator.start(start.estimate, start.P);
+            return watched(navigator);
+          }};
+}
+
 AtlasColumn used_on_arrival() {
   return {AtlasGroup::kNotOffered, "Ekf/fixes used as they arrive",
           [](const EkfConfig& config, const TrialStart& start) {
@@ -100,13 +109,13 @@ std::vector<AtlasCell> run_fix_order(const AtlasOptions& options) {
   const auto trials = recorded_trials(scene, options.brief ? 1 : 4);
   std::vector<AtlasCell> cells;
   for (const Order& order : orders()) {
-    for (const AtlasColumn& column : {few_atlas_columns().front(), used_on_arrival()}) {
+    for (const AtlasColumn& column :
+         {few_atlas_columns().front(), patient_navigator(), used_on_arrival()}) {
       const bool on_arrival = column.group == AtlasGroup::kNotOffered;
       const Score score = [&](WatchedFilter& filter, const RecordedTrial& trial) {
         return delivered_rms_m(filter, trial, order.deliveries(trial), on_arrival);
       };
-      for (const AtlasCell& cell :
-           scored({column}, scene.filter, trials, order.condition, score)) {
+      for (const AtlasCell& cell : scored({column}, scene.filter, trials, order.condition, score)) {
         cells.push_back(cell);
       }
     }

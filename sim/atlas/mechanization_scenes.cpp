@@ -5,7 +5,9 @@
 namespace leeway::sim {
 
 std::vector<AtlasScene> mechanization_scenes() {
-  return {pitch_90(), coning(), sculling(), float_position(), euler_hour()};
+  return {pitch_90(),  pole(),         antimeridian(), float_position(),
+          coning(),    sculling(),     euler_hour(),   split_intervals(),
+          fix_order(), clock_faults(), unit_slips(),   under_modelled()};
 }
 
 }  // namespace leeway::sim

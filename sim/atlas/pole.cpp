@@ -38,12 +38,7 @@ std::vector<AtlasCell> run_pole(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene pole() {
-  return {"pole",
-          "Over the north pole",
-          "error of the position",
-          "m",
-          crossing_limits(),
-          run_pole};
+  return {"pole", "Over the north pole", "error of the position", "m", crossing_limits(), run_pole};
 }
 
 }  // namespace leeway::sim

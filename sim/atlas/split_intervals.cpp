@@ -87,8 +87,11 @@ void add_intervals(std::vector<AtlasCell>& cells, const std::string& condition,
                      end_error_m(increments, run.nav), run.reported});
   }
   const FreeRun blind = free_run(start, times_ignored(increments), {});
-  cells.push_back({AtlasGroup::kNotOffered, "times ignored", condition,
-                   end_error_m(increments, blind.nav), {}});
+  cells.push_back({AtlasGroup::kNotOffered,
+                   "times ignored",
+                   condition,
+                   end_error_m(increments, blind.nav),
+                   {}});
 }
 
 std::vector<AtlasCell> run_split_intervals(const AtlasOptions&) {

@@ -13,8 +13,8 @@ Scene town_drive(double duration_s) {
   scene.imu_rate_hz = 100.0;
   set_imu(scene, "automotive-mems", automotive_mems_model());
   scene.filter.gnss_correlation_s = 0.0;
-  scene.initial = InitialSigma{
-      .tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 3.0};
+  scene.initial =
+      InitialSigma{.tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 3.0};
   return scene;
 }
 

@@ -1,5 +1,3 @@
-#include <array>
-
 #include "leeway/rotation.hpp"
 #include "mechanization_scenes.hpp"
 #include "town_drive.hpp"
@@ -51,6 +49,14 @@ void take_ned_for_enu(GnssFix& fix) {
   fix.velocity->v_e_mps = C_en * Eigen::Vector3d(v_n.y(), v_n.x(), -v_n.z());
 }
 
+/// Of the IMU's times; the receiver's are right.
+void take_ms_for_s(RecordedTrial& trial) {
+  for (ImuIncrement& inc : trial.imu) {
+    inc.time = Time{} + 1000 * inc.time.time_since_epoch();
+    inc.dt_s *= 1000.0;
+  }
+}
+
 struct Slip {
   const char* condition;
   Spoil spoil;
@@ -66,7 +72,7 @@ std::vector<Slip> slips() {
       {"g read as m/s^2", imu([](auto& i) { scale(i, 1.0, 1.0 / kStandardGravityMps2); })},
       {"m/s^2 read as g", imu([](auto& i) { scale(i, 1.0, kStandardGravityMps2); })},
       {"increments read as rates", imu([](auto& i) { scale(i, kInterval, kInterval); })},
-      {"rates read as increments", imu([](auto& i) { scale(i, 1.0 / kInterval, 1.0 / kInterval); })},
+      {"ms read as s", take_ms_for_s},
       {"accelerometer's sign", imu([](auto& i) { scale(i, 1.0, -1.0); })},
       {"gyro's sign", imu([](auto& i) { scale(i, -1.0, 1.0); })},
       {"axes x and y swapped", imu([](auto& i) { renamed(i, swapped_xy()); })},

@@ -108,7 +108,11 @@ class WatchedNavigator final : public WatchedFilter {
  public:
   explicit WatchedNavigator(const Navigator& navigator) : navigator_(navigator) {}
 
-  void predict(const ImuIncrement& inc) override { navigator_.push(inc); }
+  void predict(const ImuIncrement& inc) override {
+    const Verdict verdict = navigator_.push(inc);
+    const bool is_integrated = verdict == Verdict::kAccepted || verdict == Verdict::kAligning;
+    if (!is_integrated) reports_.insert(std::string(name(verdict)));
+  }
 
   void update(const GnssFix& fix) override {
     note_state();
