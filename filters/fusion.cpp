@@ -16,6 +16,7 @@ constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized fi
 constexpr std::uint32_t kLockouts = 3;          // so many within so long: widening does not cure it
 constexpr double kLockoutsWithinS = 120.0;
 constexpr double kRelapseS = 60.0;  // locked out again this soon: the attitude is wrong too
+constexpr std::uint32_t kTrustAgainAfter = 30;  // fixes fused in a row
 
 AlignmentConfig alignment_of(const NavigatorConfig& config) {
   AlignmentConfig alignment = config.alignment;
@@ -135,6 +136,7 @@ Verdict Fusion::fuse(const GnssFix& fix) {
                                hides ? Held::kHeadingAndTurn : Held::kNothing});
   });
   const Verdict verdict = settle(fix);
+  previous_fix_ = fix;
   if (bank_) guard_numbers();
   if (bank_) watch_covariance();
   if (bank_ && !C_bs_) find_mount();
@@ -173,6 +175,7 @@ Verdict Fusion::settle(const GnssFix& fix) {
   }
   if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
   note_fused(fix.time);
+  if (++fused_in_a_row_ >= kTrustAgainAfter) distrusts_imu_ = false;
   return Verdict::kFused;
 }
 
@@ -186,7 +189,14 @@ void Fusion::follow_drift() {
 }
 
 Verdict Fusion::locked_out(const GnssFix& fix) {
+  fused_in_a_row_ = 0;
   if (gated_in_a_row_++ == 0) gated_since_ = fix.time;
+  if (gated_in_a_row_ == kWidenFrom) judge_imu(fix.time);
+  if (distrusts_imu_ && previous_fix_ && agree(*previous_fix_, fix)) {
+    ++resets_;
+    restart_motion(fix);
+    return Verdict::kReset;
+  }
   if (gated_in_a_row_ < kWidenFrom) return Verdict::kGated;
   if (gated_in_a_row_ == kWidenFrom && locks_out_again(fix.time)) {
     ++resets_;
@@ -207,6 +217,11 @@ Verdict Fusion::locked_out(const GnssFix& fix) {
     restart_motion(fix);
   }
   return Verdict::kReset;
+}
+
+void Fusion::judge_imu(Time t) {
+  // Locked out again soon after everything but the IMU was taken anew.
+  if (last_realigned_ && to_seconds(t - *last_realigned_) < kRelapseS) distrusts_imu_ = true;
 }
 
 bool Fusion::locks_out_again(Time t) {
@@ -230,6 +245,7 @@ void Fusion::restart_motion(const GnssFix& fix) {
 
 void Fusion::realign() {
   ++realignments_;
+  last_realigned_ = bank_->best().estimate().nav.time;
   bank_.reset();
   aligner_ = Aligner(alignment_of(config_), filter_of(config_));
   C_bs_ = config_.C_bs;

@@ -9,6 +9,8 @@
 namespace leeway::sim {
 namespace {
 
+constexpr double kConingRad = 0.1 * kRadPerDeg;
+
 /// The body's axes draw cones of this half angle.
 Trajectory coning_motion(double frequency_hz) {
   Trajectory trajectory = static_trajectory();

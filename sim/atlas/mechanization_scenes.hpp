@@ -1,16 +1,10 @@
 /// @file
-/// The scenes that break mechanizations, clocks and sensors, one in a file each; and what their
-/// tests need to know of them.
+/// The scenes that break mechanizations, clocks and sensors, one file each.
 #pragma once
 
-#include "leeway/rotation.hpp"
 #include "leeway/sim/atlas.hpp"
 
 namespace leeway::sim {
-
-inline constexpr double kConingRad = 0.1 * kRadPerDeg;
-inline constexpr double kScullingRad = 0.2 * kRadPerDeg;
-inline constexpr double kScullingMps2 = 20.0;
 
 AtlasScene antimeridian();
 AtlasScene clock_faults();

@@ -1,12 +1,15 @@
 #include <numbers>
 
-#include "free_run.hpp"
+#include "leeway/rotation.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "mechanization_scenes.hpp"
 #include "vibration.hpp"
 
 namespace leeway::sim {
 namespace {
+
+constexpr double kScullingRad = 0.2 * kRadPerDeg;
+constexpr double kScullingMps2 = 20.0;
 
 /// Rolls and swings sideways in phase: the force has a mean upwards in the body's axes, none in
 /// level ones.

@@ -3,8 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
-#include <cmath>
-#include <numbers>
 
 #include "free_run.hpp"
 #include "leeway/sim/increment_table.hpp"
@@ -49,14 +47,6 @@ std::vector<AtlasCell> vibration_cells(
     }
   }
   return cells;
-}
-
-double vibration_left_out(Scheme scheme, double frequency_hz, double imu_rate_hz) {
-  const double x = 2.0 * std::numbers::pi * frequency_hz / imu_rate_hz;
-  const double sinc = std::sin(x) / x;
-  const double one_sample = 1.0 - sinc;
-  if (scheme == Scheme::kOneSample) return one_sample;
-  return one_sample - 2.0 / 3.0 * std::sin(0.5 * x) * std::sin(0.5 * x) * sinc;
 }
 
 }  // namespace leeway::sim

@@ -53,6 +53,8 @@ class Fusion {
   const NoiseScale& position_noise() const { return position_noise_; }
   const NoiseScale& velocity_noise() const { return velocity_noise_; }
   bool at_rest() const { return aiding_.at_rest(); }
+  /// A new attitude did not end the refusal of fixes that agree: position and velocity are theirs.
+  bool distrusts_imu() const { return distrusts_imu_; }
   std::uint32_t repairs() const { return repairs_; }
   std::uint32_t resets() const { return resets_; }
   std::uint32_t realignments() const { return realignments_; }
@@ -61,8 +63,9 @@ class Fusion {
   template <class Archive>
   void visit(Archive& archive) {
     archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
-            last_fused_, gated_since_, last_reset_, first_lockout_, lockouts_, gated_in_a_row_,
-            repairs_, resets_, realignments_);
+            last_fused_, gated_since_, last_reset_, last_realigned_, first_lockout_, previous_fix_,
+            lockouts_, gated_in_a_row_, fused_in_a_row_, distrusts_imu_, repairs_, resets_,
+            realignments_);
     const Ekf filter = any_filter();
     bool has_bank = bank_.has_value();
     archive(has_bank);
@@ -85,6 +88,7 @@ class Fusion {
   Verdict locked_out(const GnssFix& fix);
   void realign();
   bool locks_out_again(Time t);
+  void judge_imu(Time t);
   void restart_motion(const GnssFix& fix);
   void guard_numbers();
   void watch_covariance();
@@ -102,9 +106,13 @@ class Fusion {
   std::optional<Time> last_fused_{};   // fix
   std::optional<Time> gated_since_{};  // the first of the fixes refused in a row
   std::optional<Time> last_reset_{};
+  std::optional<Time> last_realigned_{};
   std::optional<Time> first_lockout_{};
+  std::optional<GnssFix> previous_fix_{};
   std::uint32_t lockouts_{0};
   std::uint32_t gated_in_a_row_{0};
+  std::uint32_t fused_in_a_row_{0};
+  bool distrusts_imu_{false};
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};
   std::uint32_t realignments_{0};
