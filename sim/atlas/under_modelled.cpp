@@ -43,8 +43,8 @@ struct SensorFault {
 /// Rectification: what shakes a MEMS sensor shifts its mean, from the moment it shakes.
 void rectify(ImuIncrement& inc) {
   if (inc.time <= kVibratesFrom) return;
-  inc.dv_b_mps += 0.02 * kStandardGravityMps2 * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
-  inc.dtheta_b_rad += 0.2 * kRadPerDeg * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
+  inc.dv_b_mps += 0.03 * kStandardGravityMps2 * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
+  inc.dtheta_b_rad += 0.3 * kRadPerDeg * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
 }
 
 constexpr SensorFault kSensorFaults[] = {
@@ -55,7 +55,7 @@ constexpr SensorFault kSensorFaults[] = {
      [](ImuIncrement& inc) {
        inc.dtheta_b_rad += 0.1 * kRadPerDeg / kStandardGravityMps2 * inc.dv_b_mps;
      }},
-    {"vibration shifts biases by 20 mg and 0.2 deg/s", rectify}};
+    {"vibration shifts biases by 30 mg and 0.3 deg/s", rectify}};
 
 std::vector<AtlasColumn> claiming_columns() {
   std::vector<AtlasColumn> columns;
