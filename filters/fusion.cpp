@@ -16,7 +16,7 @@ constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized fi
 constexpr std::uint32_t kLockouts = 3;          // so many within so long: widening does not cure it
 constexpr double kLockoutsWithinS = 120.0;
 constexpr double kRelapseS = 60.0;  // locked out again this soon: the attitude is wrong too
-constexpr std::uint32_t kTrustAgainAfter = 30;  // fixes fused in a row
+constexpr std::uint32_t kTrustAgainAfter = 30;  // fixes fused in a row; then on probation
 
 AlignmentConfig alignment_of(const NavigatorConfig& config) {
   AlignmentConfig alignment = config.alignment;
@@ -175,7 +175,10 @@ Verdict Fusion::settle(const GnssFix& fix) {
   }
   if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
   note_fused(fix.time);
-  if (++fused_in_a_row_ >= kTrustAgainAfter) distrusts_imu_ = false;
+  if (++fused_in_a_row_ >= kTrustAgainAfter && distrusts_imu_) {
+    distrusts_imu_ = false;
+    on_probation_since_ = fix.time;
+  }
   return Verdict::kFused;
 }
 
@@ -191,7 +194,7 @@ void Fusion::follow_drift() {
 Verdict Fusion::locked_out(const GnssFix& fix) {
   fused_in_a_row_ = 0;
   if (gated_in_a_row_++ == 0) gated_since_ = fix.time;
-  if (gated_in_a_row_ == kWidenFrom) judge_imu(fix.time);
+  if (gated_in_a_row_ == kWidenFrom && is_on_probation(fix.time)) distrusts_imu_ = true;
   if (distrusts_imu_ && previous_fix_ && agree(*previous_fix_, fix)) {
     ++resets_;
     restart_motion(fix);
@@ -219,9 +222,8 @@ Verdict Fusion::locked_out(const GnssFix& fix) {
   return Verdict::kReset;
 }
 
-void Fusion::judge_imu(Time t) {
-  // Locked out again soon after everything but the IMU was taken anew.
-  if (last_realigned_ && to_seconds(t - *last_realigned_) < kRelapseS) distrusts_imu_ = true;
+bool Fusion::is_on_probation(Time t) const {
+  return on_probation_since_ && to_seconds(t - *on_probation_since_) < kRelapseS;
 }
 
 bool Fusion::locks_out_again(Time t) {
@@ -245,7 +247,7 @@ void Fusion::restart_motion(const GnssFix& fix) {
 
 void Fusion::realign() {
   ++realignments_;
-  last_realigned_ = bank_->best().estimate().nav.time;
+  on_probation_since_ = bank_->best().estimate().nav.time;
   bank_.reset();
   aligner_ = Aligner(alignment_of(config_), filter_of(config_));
   C_bs_ = config_.C_bs;

@@ -63,9 +63,9 @@ class Fusion {
   template <class Archive>
   void visit(Archive& archive) {
     archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
-            last_fused_, gated_since_, last_reset_, last_realigned_, first_lockout_, previous_fix_,
-            lockouts_, gated_in_a_row_, fused_in_a_row_, distrusts_imu_, repairs_, resets_,
-            realignments_);
+            last_fused_, gated_since_, last_reset_, on_probation_since_, first_lockout_,
+            previous_fix_, lockouts_, gated_in_a_row_, fused_in_a_row_, distrusts_imu_, repairs_,
+            resets_, realignments_);
     const Ekf filter = any_filter();
     bool has_bank = bank_.has_value();
     archive(has_bank);
@@ -88,7 +88,7 @@ class Fusion {
   Verdict locked_out(const GnssFix& fix);
   void realign();
   bool locks_out_again(Time t);
-  void judge_imu(Time t);
+  bool is_on_probation(Time t) const;
   void restart_motion(const GnssFix& fix);
   void guard_numbers();
   void watch_covariance();
@@ -106,7 +106,7 @@ class Fusion {
   std::optional<Time> last_fused_{};   // fix
   std::optional<Time> gated_since_{};  // the first of the fixes refused in a row
   std::optional<Time> last_reset_{};
-  std::optional<Time> last_realigned_{};
+  std::optional<Time> on_probation_since_{};  // the IMU, since all else was taken anew
   std::optional<Time> first_lockout_{};
   std::optional<GnssFix> previous_fix_{};
   std::uint32_t lockouts_{0};
