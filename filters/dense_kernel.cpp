@@ -29,14 +29,21 @@ Matrix<Scalar> triple_product(const Matrix<Scalar>& a, const Matrix<Scalar>& b) 
 template <class Scalar>
 using BatchFactor = Eigen::Matrix<Scalar, kErrorStates, kMaxRows>;
 
-/// Moves x_hat by the measurement and returns V.
 template <class Scalar>
-BatchFactor<Scalar> batch_gain(const Matrix<Scalar>& P, ErrorVector& x_hat,
-                               const MeasurementRows& H, const MeasurementValues& z) {
-  const int rows = static_cast<int>(H.rows());
+struct BatchGain {
   BatchFactor<Scalar> V;
+  Scalar nis;
+};
+
+/// Moves x_hat by the measurement.
+template <class Scalar>
+BatchGain<Scalar> batch_gain(const Matrix<Scalar>& P, ErrorVector& x_hat, const MeasurementRows& H,
+                             const MeasurementValues& z) {
+  const int rows = static_cast<int>(H.rows());
+  BatchGain<Scalar> gain{BatchFactor<Scalar>::Zero(), 0};
+  auto& V = gain.V;
   Eigen::Matrix<Scalar, kMaxRows, kMaxRows> L;
-  Eigen::Matrix<Scalar, kMaxRows, 1> white;
+  Eigen::Matrix<Scalar, kMaxRows, 1> white = Eigen::Matrix<Scalar, kMaxRows, 1>::Zero();
   for (int i = 0; i < rows; ++i) {
     const CovarianceVector<Scalar> h = H.row(i).transpose().template cast<Scalar>();
     V.col(i) = P.lazyProduct(h);
@@ -58,8 +65,9 @@ BatchFactor<Scalar> batch_gain(const Matrix<Scalar>& P, ErrorVector& x_hat,
   }
   for (int i = 0; i < rows; ++i) {
     x_hat += (white(i) * V.col(i)).template cast<double>();
+    gain.nis += white(i) * white(i);
   }
-  return V;
+  return gain;
 }
 
 }  // namespace
@@ -89,14 +97,12 @@ double DenseKernel<Scalar>::update(ErrorVector& x_hat, const ErrorVector& h, dou
 }
 
 template <class Scalar>
-void DenseKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
-                                 const MeasurementValues& z) {
-  if (form_ != UpdateForm::kBatch) {
-    update_in_sequence(*this, x_hat, H, z);
-    return;
-  }
-  const BatchFactor<Scalar> V = batch_gain<Scalar>(P_, x_hat, H, z);
+double DenseKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
+                                   const MeasurementValues& z) {
+  if (form_ != UpdateForm::kBatch) return update_in_sequence(*this, x_hat, H, z);
+  const auto [V, nis] = batch_gain<Scalar>(P_, x_hat, H, z);
   for (int i = 0; i < H.rows(); ++i) P_ -= V.col(i) * V.col(i).transpose();
+  return static_cast<double>(nis);
 }
 
 template class DenseKernel<float>;

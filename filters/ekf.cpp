@@ -123,7 +123,8 @@ Eigen::Matrix<double, N, 1> correction_by(Eigen::Matrix<double, N, N>& P, const 
                                           const HeldDirections& U) {
   Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
   const bool nothing_held = U.isZero(0.0);
-  if (nothing_held && update_at_once<double, N>(P, x, m.rows, m.H, m.z, kJosephShrinkage)) {
+  if (nothing_held &&
+      update_at_once<double, N>(P, x, m.rows, m.H, m.z, kJosephShrinkage).has_value()) {
     return x;
   }
   for (int i = 0; i < m.rows; ++i) {
@@ -327,11 +328,7 @@ double Ekf::heading_sigma_rad() const {
 }
 
 bool Ekf::rest_hides_heading() const {
-  const TriadErrorModel& gyro = config_.imu.gyro;
-  const double bias_radps = std::hypot(gyro.bias_sigma, gyro.in_run.sigma);
-  const Eigen::Vector3d down_e = down_e_at(estimate_.nav.r_e_m);
-  const double level_rate_radps = earth_rotation_e_radps().cross(down_e).norm();
-  return bias_radps > level_rate_radps * heading_sigma_rad();
+  return leeway::rest_hides_heading(config_.imu, estimate_, P_);
 }
 
 void Ekf::estimate_vehicle(const VehicleState& vehicle) {
@@ -388,7 +385,7 @@ bool Ekf::is_sane() const {
 }
 
 bool Ekf::repair_covariance() {
-  if (Cholesky<kErrorStates>(P_).positive()) return true;
+  if (is_positive_definite(P_)) return true;
   constexpr double kFloor = 1e-9;
   // Of the correlations, so that no state is small beside another for its unit alone.
   const ErrorVector sigma = P_.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-12);
@@ -440,6 +437,16 @@ ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sig
   P.diagonal().segment<3>(kBg).setConstant(variance(imu.gyro, biases.gyro));
   return P;
 }
+
+bool rest_hides_heading(const ImuErrorModel& imu, const Estimate& estimate, const ErrorMatrix& P) {
+  const double bias_radps = std::hypot(imu.gyro.bias_sigma, imu.gyro.in_run.sigma);
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
+  const double level_rate_radps = earth_rotation_e_radps().cross(down_e).norm();
+  const double heading_sigma_rad = std::sqrt(std::max(0.0, heading_variance_rad2(estimate, P)));
+  return bias_radps > level_rate_radps * heading_sigma_rad;
+}
+
+bool is_positive_definite(const ErrorMatrix& P) { return Cholesky<kErrorStates>(P).positive(); }
 
 double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P) {
   const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);

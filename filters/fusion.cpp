@@ -164,7 +164,8 @@ Verdict Fusion::settle(const GnssFix& fix) {
     follow_drift();
   }
   if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
-  note_fused(fix.time);
+  last_fused_ = fix.time;
+  lock_out_.fused(fix);
   return Verdict::kFused;
 }
 
@@ -178,7 +179,7 @@ void Fusion::follow_drift() {
 }
 
 Verdict Fusion::locked_out(const GnssFix& fix) {
-  switch (lock_out_.refused(fix.time, fix.position.has_value())) {
+  switch (lock_out_.refused(fix)) {
     case LockOut::Remedy::kWait:
       return Verdict::kGated;
     case LockOut::Remedy::kWiden:
@@ -198,11 +199,11 @@ Verdict Fusion::locked_out(const GnssFix& fix) {
 
 void Fusion::realign() {
   ++realignments_;
+  lock_out_.realigned(bank_->best().estimate().nav.time);
   bank_.reset();
   aligner_ = Aligner(alignment_of(config_), filter_of(config_));
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
-  lock_out_.forget();
 }
 
 void Fusion::guard_numbers() {

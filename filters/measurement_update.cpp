@@ -138,6 +138,7 @@ class WholeMeasurement {
           S_[i][j + 1 + k] -= L[i][j] * S_[j + 1 + k][j];
         });
       });
+      nis_ += y(int{j}) * y(int{j}) * inverse_[j];
     });
     each_block<Scalar, N>([&](int, int row) __attribute__((always_inline)) {
       lanes::Array<VectorOf<Scalar>, rows> u;
@@ -155,6 +156,7 @@ class WholeMeasurement {
   }
 
   const Eigen::Matrix<Scalar, N, 1>& correction() const { return x_; }
+  Scalar nis() const { return nis_; }
 
   void subtract_from(Matrix& P) const {
     change_symmetric<Scalar, N>(
@@ -176,26 +178,27 @@ class WholeMeasurement {
   Eigen::Matrix<Scalar, N, 1> x_;
   lanes::Array<lanes::Array<Scalar, rows>, rows> S_;
   lanes::Array<Scalar, rows> inverse_;
+  Scalar nis_{0};
 };
 
 template <int rows, class Scalar, int N>
-bool update_rows(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
-                 const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation,
-                 Scalar shrinkage) {
+std::optional<Scalar> update_rows(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
+                                  const RowColumns<Scalar, N>& H,
+                                  const RowValues<Scalar>& innovation, Scalar shrinkage) {
   WholeMeasurement<Scalar, N, rows> measurement(P, H);
-  if (!(measurement.shrinkage() <= shrinkage)) return false;
+  if (!(measurement.shrinkage() <= shrinkage)) return std::nullopt;
   measurement.decorrelate(innovation);
   measurement.subtract_from(P);
   x = measurement.correction();
-  return true;
+  return measurement.nis();
 }
 
 }  // namespace
 
 template <class Scalar, int N>
-bool update_at_once(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x, int rows,
-                    const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation,
-                    Scalar shrinkage) {
+std::optional<Scalar> update_at_once(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
+                                     int rows, const RowColumns<Scalar, N>& H,
+                                     const RowValues<Scalar>& innovation, Scalar shrinkage) {
   return rows <= 3 ? update_rows<3>(P, x, H, innovation, shrinkage)
                    : update_rows<kMaxRows>(P, x, H, innovation, shrinkage);
 }
@@ -225,7 +228,7 @@ Scalar update_by_row(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>
 }
 
 #define LEEWAY_INSTANTIATE(Scalar, N)                                    \
-  template bool update_at_once<Scalar, N>(                               \
+  template std::optional<Scalar> update_at_once<Scalar, N>(              \
       Eigen::Matrix<Scalar, N, N>&, Eigen::Matrix<Scalar, N, 1>&, int,   \
       const RowColumns<Scalar, N>&, const RowValues<Scalar>&, Scalar);   \
   template Scalar update_by_row<Scalar, N>(Eigen::Matrix<Scalar, N, N>&, \

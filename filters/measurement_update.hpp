@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "leeway/filters/covariance_kernel.hpp"
 
@@ -27,11 +28,11 @@ inline constexpr double kJosephShrinkage = 100.0;
 /// nothing is done.
 /// @param innovation  what was measured less what the estimate says, row by row; zero beyond them
 /// @param x  the correction of the estimate
-/// @returns whether it was done
+/// @returns the NIS of the rows if it was done
 template <class Scalar, int N>
-bool update_at_once(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x, int rows,
-                    const RowColumns<Scalar, N>& H, const RowValues<Scalar>& innovation,
-                    Scalar shrinkage);
+std::optional<Scalar> update_at_once(Eigen::Matrix<Scalar, N, N>& P, Eigen::Matrix<Scalar, N, 1>& x,
+                                     int rows, const RowColumns<Scalar, N>& H,
+                                     const RowValues<Scalar>& innovation, Scalar shrinkage);
 
 /// Takes one row of unit variance into P.
 /// @param form  Joseph's, or the simple one for any other

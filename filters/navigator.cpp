@@ -225,11 +225,11 @@ Health Navigator::health() const {
   const double ratio = std::max(health.position_nis_ratio, health.velocity_nis_ratio);
   health.optimistic_by = std::sqrt(std::max(1.0, ratio));
   using State = Health::State;
-  health.state = f.gated_since()                  ? State::kGating
-                 : health.coasting_s > kCoastingS ? State::kCoasting
-                 : !f.bank().collapsed()          ? State::kHeadingOpen
-                 : ratio > kInconsistentRatio     ? State::kInconsistent
-                                                  : State::kAligned;
+  health.state = f.gated_since()                                   ? State::kGating
+                 : health.coasting_s > kCoastingS                  ? State::kCoasting
+                 : !f.bank().collapsed()                           ? State::kHeadingOpen
+                 : f.distrusts_imu() || ratio > kInconsistentRatio ? State::kInconsistent
+                                                                   : State::kAligned;
   return health;
 }
 

@@ -99,16 +99,18 @@ double SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const ErrorVector& h,
 }
 
 template <class Scalar>
-void SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
-                                     const MeasurementValues& z) {
-  if (form_ == UpdateForm::kSimple || !take_at_once(x_hat, H, z)) {
-    update_in_sequence(*this, x_hat, H, z);
+double SymmetricKernel<Scalar>::update(ErrorVector& x_hat, const MeasurementRows& H,
+                                       const MeasurementValues& z) {
+  if (form_ != UpdateForm::kSimple) {
+    if (const auto nis = take_at_once(x_hat, H, z)) return static_cast<double>(*nis);
   }
+  return update_in_sequence(*this, x_hat, H, z);
 }
 
 template <class Scalar>
-bool SymmetricKernel<Scalar>::take_at_once(ErrorVector& x_hat, const MeasurementRows& H,
-                                           const MeasurementValues& z) {
+std::optional<Scalar> SymmetricKernel<Scalar>::take_at_once(ErrorVector& x_hat,
+                                                            const MeasurementRows& H,
+                                                            const MeasurementValues& z) {
   const int rows = static_cast<int>(H.rows());
   RowColumns<Scalar, kPaddedStates> columns = RowColumns<Scalar, kPaddedStates>::Zero();
   RowValues<Scalar> innovation = RowValues<Scalar>::Zero();
@@ -123,12 +125,10 @@ bool SymmetricKernel<Scalar>::take_at_once(ErrorVector& x_hat, const Measurement
   PaddedVector<Scalar> x;
   const double shrinkage =
       form_ == UpdateForm::kBatch ? std::numeric_limits<double>::infinity() : kJosephShrinkage;
-  if (!update_at_once<Scalar, kPaddedStates>(P_, x, rows, columns, innovation,
-                                             static_cast<Scalar>(shrinkage))) {
-    return false;
-  }
-  x_hat += x.template head<kErrorStates>().template cast<double>();
-  return true;
+  const auto nis = update_at_once<Scalar, kPaddedStates>(P_, x, rows, columns, innovation,
+                                                         static_cast<Scalar>(shrinkage));
+  if (nis) x_hat += x.template head<kErrorStates>().template cast<double>();
+  return nis;
 }
 
 template class SymmetricKernel<float>;

@@ -46,4 +46,25 @@ bool is_usable(const GnssFix& fix) {
   return true;
 }
 
+bool agree(const GnssFix& earlier, const GnssFix& later) {
+  constexpr double kLongestS = 5.0;
+  constexpr double kChangeMps2 = 3.0;
+  constexpr double kGate = 16.27;  // chi-square, 3 degrees of freedom, 99.9 %
+  const double dt_s = to_seconds(later.time - earlier.time);
+  if (!(dt_s > 0.0 && dt_s <= kLongestS) || !earlier.position || !later.position ||
+      !earlier.velocity || !later.velocity) {
+    return false;
+  }
+  const Eigen::Vector3d v_mean_e_mps = 0.5 * (earlier.velocity->v_e_mps + later.velocity->v_e_mps);
+  const Eigen::Vector3d left_e_m =
+      later.position->r_e_m - earlier.position->r_e_m - dt_s * v_mean_e_mps;
+  // The trapezoid of a velocity whose slope changes by a errs by a dt^2 / 12.
+  const double bend_m = kChangeMps2 * dt_s * dt_s / 12.0;
+  const Eigen::Matrix3d R_e_m2 =
+      earlier.position->R_e_m2 + later.position->R_e_m2 +
+      0.25 * dt_s * dt_s * (earlier.velocity->R_e_m2ps2 + later.velocity->R_e_m2ps2) +
+      bend_m * bend_m * Eigen::Matrix3d::Identity();
+  return left_e_m.dot(R_e_m2.llt().solve(left_e_m)) <= kGate;
+}
+
 }  // namespace leeway

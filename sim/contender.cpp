@@ -1,18 +1,9 @@
 #include "contender.hpp"
 
-#include <algorithm>
-#include <array>
-#include <concepts>
 #include <optional>
 #include <utility>
 
-#include "leeway/filters/dense_kernel.hpp"
-#include "leeway/filters/invariant_ekf.hpp"
-#include "leeway/filters/kernel_ekf.hpp"
-#include "leeway/filters/reset_filter.hpp"
-#include "leeway/filters/square_root_kernel.hpp"
-#include "leeway/filters/symmetric_kernel.hpp"
-#include "leeway/filters/ud_kernel.hpp"
+#include "visit_filter.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -57,55 +48,13 @@ class Runner final : public Contender {
   std::optional<Filter> when_valid_{};
 };
 
-template <class Filter>
-std::unique_ptr<Contender> running(Filter filter) {
-  return std::make_unique<Runner<Filter>>(std::move(filter));
-}
-
-using Factory = std::unique_ptr<Contender> (*)(const EkfConfig&, UpdateForm, const TrialStart&);
-
-template <class Kernel, class Error>
-std::unique_ptr<Contender> make_ekf(const EkfConfig& config, UpdateForm form,
-                                    const TrialStart& start) {
-  using Filter = KernelEkf<Kernel, Error>;
-  if constexpr (std::constructible_from<Kernel, const ErrorMatrix&, UpdateForm>) {
-    return running(Filter(config, start.estimate, Kernel(start.P, form)));
-  } else {
-    return running(Filter(config, start.estimate, Kernel(start.P)));
-  }
-}
-
-struct Entry {
-  KernelForm kernel;
-  Precision precision;
-  Factory make;
-};
-
-template <class Error>
-constexpr std::array kEkfs{
-    Entry{KernelForm::kDense, Precision::kFloat, make_ekf<DenseKernel<float>, Error>},
-    Entry{KernelForm::kDense, Precision::kDouble, make_ekf<DenseKernel<double>, Error>},
-    Entry{KernelForm::kSymmetric, Precision::kFloat, make_ekf<SymmetricKernel<float>, Error>},
-    Entry{KernelForm::kSymmetric, Precision::kDouble, make_ekf<SymmetricKernel<double>, Error>},
-    Entry{KernelForm::kUd, Precision::kFloat, make_ekf<UdKernel<float>, Error>},
-    Entry{KernelForm::kUd, Precision::kDouble, make_ekf<UdKernel<double>, Error>},
-    Entry{KernelForm::kSquareRoot, Precision::kFloat, make_ekf<SquareRootKernel<float>, Error>},
-    Entry{KernelForm::kSquareRoot, Precision::kDouble, make_ekf<SquareRootKernel<double>, Error>}};
-
 }  // namespace
 
 std::unique_ptr<Contender> make_contender(const Variant& variant, const EkfConfig& believed,
                                           const TrialStart& start) {
-  EkfConfig config = believed;
-  config.strapdown = variant.strapdown;
-  config.covariance_interval_s = variant.covariance_interval_s;
-  if (variant.estimator == Estimator::kReset) return running(ResetFilter(config, start.estimate));
-  const bool is_invariant = variant.estimator == Estimator::kInvariantEkf;
-  const auto& ekfs = is_invariant ? kEkfs<InvariantError> : kEkfs<AdditiveError>;
-  const auto* entry = std::find_if(ekfs.begin(), ekfs.end(), [&variant](const Entry& e) {
-    return e.kernel == variant.kernel && e.precision == variant.precision;
+  return visit_filter(variant, believed, start, [](auto filter) -> std::unique_ptr<Contender> {
+    return std::make_unique<Runner<decltype(filter)>>(std::move(filter));
   });
-  return entry->make(config, variant.update, start);
 }
 
 }  // namespace leeway::sim

@@ -21,13 +21,6 @@ constexpr std::array kForms{UpdateForm::kSimple, UpdateForm::kJoseph, UpdateForm
 constexpr std::array kPrecisions{Precision::kFloat, Precision::kDouble};
 constexpr std::array kIntervalsS{0.0, 0.1, 1.0};
 
-std::string_view word(Scheme scheme) {
-  constexpr std::array<std::string_view, 8> kWords{
-      "explicit-euler", "semi-implicit-euler", "trapezoid", "one-sample",
-      "two-sample",     "runge-kutta-4",       "coning",    "sculling"};
-  return kWords[static_cast<std::size_t>(scheme)];
-}
-
 std::string_view word(GravityModel gravity) {
   constexpr std::array<std::string_view, kAllGravities.size()> kWords{"constant", "j2", "normal"};
   return kWords[static_cast<std::size_t>(gravity)];
@@ -66,12 +59,19 @@ std::string estimator_name(const Variant& v) {
 
 }  // namespace
 
+std::string_view name(Scheme scheme) {
+  constexpr std::array<std::string_view, 8> kWords{
+      "explicit-euler", "semi-implicit-euler", "trapezoid", "one-sample",
+      "two-sample",     "runge-kutta-4",       "coning",    "sculling"};
+  return kWords[static_cast<std::size_t>(scheme)];
+}
+
 bool has_update_forms(KernelForm kernel) {
   return kernel == KernelForm::kDense || kernel == KernelForm::kSymmetric;
 }
 
 std::string name(const Variant& v, double imu_rate_hz) {
-  return fmt::format("{}/{}/{}/{:g}Hz {}", word(v.strapdown.scheme), word(v.strapdown.gravity),
+  return fmt::format("{}/{}/{}/{:g}Hz {}", name(v.strapdown.scheme), word(v.strapdown.gravity),
                      word(v.strapdown.rotation), imu_rate_hz / v.imu_divider, estimator_name(v));
 }
 

@@ -45,4 +45,9 @@ inline constexpr double kLeastSigma = 1e-9;
 /// kLeastSigma given the other axes. A fix that fails is bad data: count it, use nothing of it.
 bool is_usable(const GnssFix& fix);
 
+/// True when the way between two fixes is what their velocities say, within what their covariances
+/// and an acceleration that changes by 3 m/s^2 in between explain in 99.9 % of all cases. False
+/// unless both are whole and at most 5 s apart. @pre is_usable() of both.
+bool agree(const GnssFix& earlier, const GnssFix& later);
+
 }  // namespace leeway

@@ -128,4 +128,32 @@ TEST_CASE("a position off the Earth and an absurd speed are unusable") {
   CHECK_FALSE(is_usable(fix));
 }
 
+TEST_CASE("fixes agree when the way between them is what their velocities say") {
+  GnssFix earlier = good_fix();
+  earlier.time = time_from_seconds(100.0);
+  const Eigen::Vector3d v_e_mps = earlier.velocity->v_e_mps;
+  const auto later = [&](double dt_s, const Eigen::Vector3d& off_e_m) {
+    GnssFix fix = earlier;
+    fix.time += duration_from_seconds(dt_s);
+    fix.position->r_e_m += dt_s * v_e_mps + off_e_m;
+    return fix;
+  };
+  CHECK(agree(earlier, later(1.0, Eigen::Vector3d::Zero())));
+  // Two positions of 2.5 m horizontally and 3.5 m vertically: 4 sigma of the difference at worst is
+  // 4 sqrt(2) 3.5 = 20 m, at best 14 m.
+  CHECK(agree(earlier, later(1.0, {5.0, 0.0, 0.0})));
+  CHECK_FALSE(agree(earlier, later(1.0, {21.0, 0.0, 0.0})));
+  CHECK_FALSE(agree(earlier, later(0.0, Eigen::Vector3d::Zero())));
+  CHECK_FALSE(agree(earlier, later(5.1, Eigen::Vector3d::Zero())));
+  GnssFix position_only = later(1.0, Eigen::Vector3d::Zero());
+  position_only.velocity.reset();
+  CHECK_FALSE(agree(earlier, position_only));
+  // A velocity in km/h: 2.6 times too much of 11.2 m/s is more than 14 m.
+  GnssFix fast_before = earlier;
+  GnssFix fast = later(1.0, Eigen::Vector3d::Zero());
+  fast_before.velocity->v_e_mps *= 3.6;
+  fast.velocity->v_e_mps *= 3.6;
+  CHECK_FALSE(agree(fast_before, fast));
+}
+
 }  // namespace leeway

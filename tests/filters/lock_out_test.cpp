@@ -9,12 +9,21 @@ namespace {
 
 using Remedy = LockOut::Remedy;
 
+/// North along a meridian at 10 m/s.
+GnssFix fix_at(double t_s, bool has_position = true) {
+  const Geodetic place{45.0 * kRadPerDeg + 10.0 * t_s / 6.37e6, 0.0, 0.0};
+  GnssFix fix{time_from_seconds(t_s)};
+  if (has_position) fix.position = GnssPosition::from_geodetic(place, Eigen::Matrix3d::Identity());
+  fix.velocity = GnssVelocity::from_ned(place, {10.0, 0.0, 0.0}, Eigen::Matrix3d::Identity());
+  return fix;
+}
+
 /// What is done about n fixes refused in a row, one a second from begin_s on.
 std::vector<Remedy> refused_in_a_row(LockOut& lock_out, int n, double begin_s,
                                      bool has_position = true) {
   std::vector<Remedy> remedies;
   for (int k = 0; k < n; ++k) {
-    remedies.push_back(lock_out.refused(time_from_seconds(begin_s + k), has_position));
+    remedies.push_back(lock_out.refused(fix_at(begin_s + k, has_position)));
   }
   return remedies;
 }
@@ -36,7 +45,7 @@ TEST_CASE("a fix that is fused ends the row") {
     for (const Remedy remedy : refused_in_a_row(lock_out, 2, 10.0 * k)) {
       CHECK(remedy == Remedy::kWait);
     }
-    lock_out.end();
+    lock_out.fused(fix_at(10.0 * k + 2.0));
     CHECK(!lock_out.is_row());
     CHECK(!lock_out.since());
   }
@@ -45,7 +54,7 @@ TEST_CASE("a fix that is fused ends the row") {
 TEST_CASE("without a position there is nothing to restart from") {
   LockOut lock_out;
   CHECK(refused_in_a_row(lock_out, 12, 0.0, false).back() == Remedy::kWait);
-  CHECK(lock_out.refused(time_from_seconds(12.0), true) == Remedy::kRestart);
+  CHECK(lock_out.refused(fix_at(12.0)) == Remedy::kRestart);
 }
 
 TEST_CASE("a second restart within a minute is none: everything begins anew") {
@@ -58,17 +67,36 @@ TEST_CASE("a second restart within a minute is none: everything begins anew") {
   }
 }
 
-TEST_CASE("the third lock-out within two minutes is not widened; forget() forgets the others") {
-  for (const bool forgets : {false, true}) {
+TEST_CASE("the third lock-out within two minutes is not widened, unless all began anew") {
+  for (const bool realigned : {false, true}) {
     LockOut lock_out;
     for (const double begin_s : {0.0, 20.0}) {
       CHECK(refused_in_a_row(lock_out, 3, begin_s).back() == Remedy::kWiden);
       lock_out.end();
     }
-    if (forgets) lock_out.forget();
-    CHECK(refused_in_a_row(lock_out, 3, 40.0).back() ==
-          (forgets ? Remedy::kWiden : Remedy::kRealign));
+    if (realigned) lock_out.realigned(time_from_seconds(25.0));
+    CHECK(refused_in_a_row(lock_out, 3, 100.0).back() ==
+          (realigned ? Remedy::kWiden : Remedy::kRealign));
   }
+}
+
+TEST_CASE("locked out again soon after all began anew: fixes that agree win over the IMU") {
+  LockOut lock_out;
+  lock_out.realigned(time_from_seconds(0.0));
+  CHECK_FALSE(lock_out.distrusts_imu());
+  CHECK(refused_in_a_row(lock_out, 3, 10.0).back() == Remedy::kRestart);
+  CHECK(lock_out.distrusts_imu());
+  lock_out.end();
+  CHECK(lock_out.refused(fix_at(13.0)) == Remedy::kRestart);
+  GnssFix elsewhere = fix_at(14.0);
+  elsewhere.position->r_e_m *= 1.0001;  // 637 m up
+  lock_out.end();
+  CHECK(lock_out.refused(elsewhere) == Remedy::kWait);
+  for (int k = 0; k < 30; ++k) {
+    CHECK(lock_out.distrusts_imu());
+    lock_out.fused(fix_at(15.0 + k));
+  }
+  CHECK_FALSE(lock_out.distrusts_imu());
 }
 
 }  // namespace

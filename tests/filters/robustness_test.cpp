@@ -492,6 +492,39 @@ TEST_CASE("deg/s taken for rad/s" * doctest::test_suite("heavy")) {
   });
 }
 
+TEST_CASE("IMU that cannot be right" * doctest::test_suite("heavy")) {
+  // Right fixes win over slips of units and signs, and the navigator has said so.
+  const std::vector<std::function<void(ImuIncrement&)>> slips{
+      [](ImuIncrement& inc) { inc.dtheta_b_rad *= kRadPerDeg; },
+      [](ImuIncrement& inc) { inc.dtheta_b_rad /= kRadPerDeg; },
+      [](ImuIncrement& inc) { inc.dv_b_mps /= kStandardGravityMps2; },
+      [](ImuIncrement& inc) { inc.dv_b_mps *= -1.0; }};
+  for_seeds([&](std::uint64_t seed) {
+    for (std::size_t k = 0; k < slips.size(); ++k) {
+      CAPTURE(k);
+      Drive drive(seed);
+      drive.on_imu = [&slips, k](ImuIncrement& inc) {
+        slips[k](inc);
+        return true;
+      };
+      drive.run(240.0);
+      double square_m2 = 0.0;
+      for (double t_s = 241.0; t_s <= 300.0; t_s += 1.0) {
+        drive.run(t_s);
+        REQUIRE(drive.navigator.aligned());
+        square_m2 += drive.error_m() * drive.error_m();
+      }
+      MESSAGE("slip " << k << ": " << std::sqrt(square_m2 / 60.0) << " m, realignments "
+                      << drive.health().realignments);
+      CHECK(drive.health().realignments > 0);
+      CHECK(drive.count(Verdict::kReset) > 0);
+      // Half a second after a fix: its own 5 m in three axes, and what an IMU without the right
+      // gravity falls in that time, 1.2 m.
+      CHECK(std::sqrt(square_m2 / 60.0) < 8.0);
+    }
+  });
+}
+
 TEST_CASE("heading wrong by 180 deg at the start" * doctest::test_suite("heavy")) {
   for_seeds([](std::uint64_t seed) {
     Drive drive(seed, {}, {}, 180.0 * kRadPerDeg);

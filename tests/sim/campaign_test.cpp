@@ -8,8 +8,11 @@
 
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
+#include "leeway/rotation.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "leeway/sim/trial_journal.hpp"
+#include "leeway/sim/waypoints.hpp"
+#include "support/near.hpp"
 #include "support/temp_dir.hpp"
 
 namespace leeway::sim {
@@ -220,6 +223,34 @@ TEST_CASE("options out of range are refused") {
   Scene scene = short_case(1);
   scene.first_seed = ~std::uint64_t{0};
   CHECK(contains(message_of<Error>([&] { campaign(scene); }), "first_seed"));
+}
+
+TEST_CASE("campaign: the NEES is right over the pole; a scale factor taken for bias is in it") {
+  // It was taken for a fault of the pole, 2026-11-28: an airliner with a scale factor had 1e5.
+  const auto flown = [](double scale_sigma) {
+    const auto at = [](double lon_deg) {
+      return Waypoint{{89.7 * kRadPerDeg, lon_deg * kRadPerDeg, 11e3}, 250.0, {}};
+    };
+    Scene scene;
+    scene.name = "over the pole";
+    scene.trajectory = waypoint_trajectory({.waypoints = {at(10.0), at(-170.0)}});
+    scene.duration_s = std::floor(scene.trajectory.duration_s);
+    set_imu(scene, "aviation", imu_class_model(ImuClass::kAviation, RangeEnd::kMid));
+    scene.imu.accelerometer.scale_sigma = scale_sigma;
+    scene.filter.gnss_correlation_s = 0.0;
+    scene.initial =
+        InitialSigma{.tilt_rad = 1e-4, .heading_rad = 1e-3, .velocity_mps = 0.1, .position_m = 3.0};
+    scene.trials = 8;
+    return campaign(scene, {.score_last_s = 1.0});
+  };
+  const CampaignResult as_modelled = flown(0.0);
+  CHECK(test::is_chi_square_mean(as_modelled.mean_nees / 15.0, 15 * 8));
+  // 100 ppm of gravity, 980 um/s^2; velocities of 0.05 m/s over 266 s tell the sum with the bias to
+  // 40 um/s^2: (980 / 40)^2 in the mean, of which a few trials may have a tenth.
+  const CampaignResult scaled = flown(1e-4);
+  CHECK(scaled.mean_nees > 60.0);
+  CHECK(scaled.rms_over_sigma > 0.5);
+  CHECK(scaled.rms_over_sigma < 1.5);
 }
 
 }  // namespace leeway::sim

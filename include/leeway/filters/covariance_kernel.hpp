@@ -43,26 +43,31 @@ using MeasurementValues = decltype(Measurement::innovation);
 
 /// P <- Phi (P + Q/2) Phi^T + Q/2 by propagate(). Scalar update() returns the innovation variance
 /// h P h^T + 1; the update of a whole measurement runs the scalars in sequence unless a kernel says
-/// otherwise. The estimate x_hat is double in every kernel. Nothing allocates or throws.
+/// otherwise, and returns its NIS. The estimate x_hat is double in every kernel. Nothing allocates
+/// or throws.
 template <class K>
 concept CovarianceKernel = std::constructible_from<K, const ErrorMatrix&> &&
     requires(K kernel, const K& same, const Transition& Phi, const ProcessNoise& noise,
              ErrorVector& x_hat, const ErrorVector& h, double z, const MeasurementRows& H,
              const MeasurementValues& values) {
+  typename K::Number;  // what it computes in
   { same.matrix() } -> std::same_as<ErrorMatrix>;
   kernel.propagate(Phi, noise);
   { kernel.update(x_hat, h, z) } -> std::same_as<double>;
-  kernel.update(x_hat, H, values);
+  { kernel.update(x_hat, H, values) } -> std::same_as<double>;
 };
 
-/// The update of a whole measurement by scalars in sequence.
+/// The update of a whole measurement by scalars in sequence. @returns the NIS
 template <class K>
-void update_in_sequence(K& kernel, ErrorVector& x_hat, const MeasurementRows& H,
-                        const MeasurementValues& z) {
+double update_in_sequence(K& kernel, ErrorVector& x_hat, const MeasurementRows& H,
+                          const MeasurementValues& z) {
+  double nis = 0.0;
   for (int i = 0; i < H.rows(); ++i) {
     const ErrorVector h = H.row(i).transpose();
-    kernel.update(x_hat, h, z(i));
+    const double innovation = z(i) - h.dot(x_hat);
+    nis += innovation * innovation / kernel.update(x_hat, h, z(i));
   }
+  return nis;
 }
 
 }  // namespace leeway

@@ -12,6 +12,8 @@ namespace leeway {
 template <class Scalar>
 class DenseKernel {
  public:
+  using Number = Scalar;
+
   explicit DenseKernel(const ErrorMatrix& P, UpdateForm form = UpdateForm::kJoseph)
       : P_(P.cast<Scalar>()), form_(form) {}
 
@@ -23,7 +25,7 @@ class DenseKernel {
   void propagate(const Transition& Phi, const ProcessNoise& noise);
   /// With UpdateForm::kBatch a single row is taken by the simple form, which is the same.
   double update(ErrorVector& x_hat, const ErrorVector& h, double z);
-  void update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+  double update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
 
  private:
   CovarianceMatrix<Scalar> P_;

@@ -110,8 +110,7 @@ class Ekf {
   /// The same for any measurement at the time of the estimate. @pre m.R is positive definite.
   UpdateReport update(const Measurement& m, Held held = Held::kNothing);
 
-  /// Whether a standstill cannot tell the heading better than it is known: the rate of the Earth
-  /// that would tell it is hidden in the gyro's bias.
+  /// leeway::rest_hides_heading() of this filter.
   bool rest_hides_heading() const;
 
   /// 1 sigma of the attitude error about the vertical.
@@ -202,6 +201,13 @@ class Ekf {
 /// from the model (turn-on and in-run together), zero where there is no state.
 ErrorMatrix initial_covariance(const Estimate& estimate, const InitialSigma& sigma,
                                const ImuErrorModel& imu, const BiasStates& biases = {});
+
+/// Whether a standstill cannot tell the heading better than it is known: the rate of the Earth that
+/// would tell it is hidden in the gyro's bias.
+bool rest_hides_heading(const ImuErrorModel& imu, const Estimate& estimate, const ErrorMatrix& P);
+
+/// Whether every direction of the error has a variance: the Cholesky factor exists.
+bool is_positive_definite(const ErrorMatrix& P);
 
 /// Variance of a turn about the local vertical: of the heading.
 double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P);

@@ -54,6 +54,7 @@ class Fusion {
   const NoiseScale& position_noise() const { return position_noise_; }
   const NoiseScale& velocity_noise() const { return velocity_noise_; }
   bool at_rest() const { return aiding_.at_rest(); }
+  bool distrusts_imu() const { return lock_out_.distrusts_imu(); }
   std::uint32_t repairs() const { return repairs_; }
   std::uint32_t resets() const { return resets_; }
   std::uint32_t realignments() const { return realignments_; }

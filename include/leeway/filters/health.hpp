@@ -14,7 +14,7 @@ struct Health {
     kAligned,       ///< as it should be
     kCoasting,      ///< no fix was fused for longer than 2 s
     kGating,        ///< fixes come, and are refused
-    kInconsistent,  ///< innovations are larger than the filter claims
+    kInconsistent,  ///< innovations are larger than the filter claims, or the IMU cannot be right
   };
 
   State state{State::kAligning};

@@ -2,6 +2,8 @@
 /// The 15-state filter over any covariance kernel: what kernels are compared by.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -25,7 +27,13 @@ struct AdditiveError {
   }
 };
 
-/// Ekf without its gate, its monitors and the vehicle, on a covariance of any form. Allocates
+/// What a fix said to a filter that refuses none.
+struct FusedFix {
+  int dof{0};       ///< its components; 0: not usable, nothing was changed
+  double nis{0.0};  ///< normalized innovation squared, by the weights it was fused with
+};
+
+/// Ekf without its gate, its repairs and the vehicle, on a covariance of any form. Allocates
 /// nothing after construction beyond what the kernel does, which is nothing.
 /// @tparam Error  AdditiveError, or InvariantError (invariant_ekf.hpp): which error it is that P is
 /// of. They agree to first order.
@@ -35,7 +43,8 @@ class KernelEkf {
   /// @param kernel  holds the covariance of the estimate
   /// @throws Error when configuration or estimate are invalid.
   KernelEkf(const EkfConfig& config, const Estimate& estimate, Kernel kernel)
-      : gnss_correlation_s_(config.gnss_correlation_s),
+      : interval_s_(config.covariance_interval_s),
+        gnss_correlation_s_(config.gnss_correlation_s),
         has_gravity_gradient_(config.gravity_gradient),
         inertial_(config, estimate),
         covariance_(std::move(kernel), config.covariance_interval_s) {}
@@ -46,21 +55,23 @@ class KernelEkf {
       gravity_gradient_e_ = gravity_gradient_e(estimate().nav.r_e_m);
     }
     ErrorDynamics dynamics = inertial_.advance(inc);
+    step_s_ = inc.dt_s;
     dynamics.gravity_gradient_e = gravity_gradient_e_;
     covariance_.propagate(dynamics, inertial_.noise());
   }
 
   /// Fuses the fix, whatever it says. One that is not usable changes nothing.
   /// @pre fix.time equals estimate().nav.time.
-  void update(const GnssFix& fix) {
-    if (!is_usable(fix)) return;
+  FusedFix update(const GnssFix& fix) {
+    if (!is_usable(fix)) return {};
     covariance_.flush(inertial_.noise());
     const WhiteMeasurement m = inertial_.white_measurement(fix, position_weight(fix.time));
     ErrorVector x_hat = ErrorVector::Zero();
-    covariance_.kernel().update(x_hat, m.H, m.z);
+    const double nis = covariance_.kernel().update(x_hat, m.H, m.z);
     inertial_.inject(Error::correction(x_hat));
     covariance_.reset_by(Error::reset(x_hat));
     if (fix.position) last_position_fix_ = fix.time;
+    return {static_cast<int>(m.H.rows()), nis};
   }
 
   const Estimate& estimate() const { return inertial_.estimate(); }
@@ -68,12 +79,32 @@ class KernelEkf {
   /// Covariance at the estimate's time. Reading it changes nothing.
   ErrorMatrix covariance() const { return covariance_.matrix(inertial_.noise()); }
 
+  /// By how much of itself the process noise of one propagation is changed when the kernel's
+  /// numbers take it in, of the state where that is most. 1: it is lost to rounding. The state
+  /// grows too sure where this stays above a half for as long as the noise takes to matter.
+  double noise_rounding() const {
+    using Number = typename Kernel::Number;
+    const ErrorVector variance = covariance().diagonal();
+    const ErrorVector q = noise_variance(inertial_.noise(), 0.5 * std::max(interval_s_, step_s_));
+    double largest = 0.0;
+    for (int i = 0; i < kErrorStates; ++i) {
+      const auto before = static_cast<Number>(variance(i));
+      const auto added = static_cast<Number>(q(i));
+      if (!(added > 0)) continue;
+      const Number kept = (before + added) - before;
+      largest = std::max(largest, static_cast<double>(std::abs(kept / added - 1)));
+    }
+    return largest;
+  }
+
  private:
   double position_weight(Time t) const {
     if (!last_position_fix_) return 1.0;
     return gnss_position_weight(to_seconds(t - *last_position_fix_), gnss_correlation_s_);
   }
 
+  double interval_s_;
+  double step_s_{0.0};  // of the newest increment
   double gnss_correlation_s_;
   bool has_gravity_gradient_;
   InertialPart inertial_;

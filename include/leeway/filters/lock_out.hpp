@@ -23,20 +23,28 @@ class LockOut {
   };
   static constexpr double kWidening = 2.0;
 
-  /// The gate has refused a fix of this time.
-  Remedy refused(Time t, bool has_position);
+  /// The gate has refused a fix.
+  Remedy refused(const GnssFix& fix);
 
-  /// A fix was fused, or motion began anew: the row has ended.
+  void fused(const GnssFix& fix);
+
+  /// Motion began anew: the row has ended.
   void end() {
     in_a_row_ = 0;
     since_.reset();
   }
 
-  /// Everything began anew: earlier rows say nothing of it.
-  void forget() {
+  /// Everything but the IMU begins anew: earlier rows say nothing of it.
+  void realigned(Time t) {
     end();
     first_lock_out_.reset();
+    on_probation_since_ = t;
   }
+
+  /// Taking everything anew did not end the refusal: what remains wrong is the IMU. Until thirty
+  /// fixes are fused in a row, one that is refused and agrees with the one before is taken for
+  /// position and velocity; for a minute after that the IMU is on probation.
+  bool distrusts_imu() const { return distrusts_imu_; }
 
   /// Whether the newest fix was refused.
   bool is_row() const { return in_a_row_ > 0; }
@@ -46,17 +54,23 @@ class LockOut {
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(since_, last_restart_, first_lock_out_, lock_outs_, in_a_row_);
+    archive(since_, last_restart_, on_probation_since_, first_lock_out_, previous_, lock_outs_,
+            in_a_row_, fused_in_a_row_, distrusts_imu_);
   }
 
  private:
+  Remedy remedy_for(const GnssFix& fix);
   bool comes_back(Time t);
 
   std::optional<Time> since_{};
   std::optional<Time> last_restart_{};
+  std::optional<Time> on_probation_since_{};  // the IMU, since all else was taken anew
   std::optional<Time> first_lock_out_{};
+  std::optional<GnssFix> previous_{};
   std::uint32_t lock_outs_{0};
   std::uint32_t in_a_row_{0};
+  std::uint32_t fused_in_a_row_{0};
+  bool distrusts_imu_{false};
 };
 
 /// Position and velocity anew, as the fix has them; a velocity that it lacks is the filter's own,

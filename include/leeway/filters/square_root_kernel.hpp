@@ -14,13 +14,15 @@ namespace leeway {
 template <class Scalar>
 class SquareRootKernel {
  public:
+  using Number = Scalar;
+
   /// @pre P is symmetric positive semidefinite.
   explicit SquareRootKernel(const ErrorMatrix& P);
   ErrorMatrix matrix() const;
   void propagate(const Transition& Phi, const ProcessNoise& noise);
   double update(ErrorVector& x_hat, const ErrorVector& h, double z);
-  void update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z) {
-    update_in_sequence(*this, x_hat, H, z);
+  double update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z) {
+    return update_in_sequence(*this, x_hat, H, z);
   }
 
  private:

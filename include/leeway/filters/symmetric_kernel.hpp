@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "leeway/filters/covariance.hpp"
 #include "leeway/filters/covariance_kernel.hpp"
@@ -34,6 +35,8 @@ void propagate_symmetric(Eigen::Matrix<Scalar, N, N>& P, const ErrorDynamics& st
 template <class Scalar>
 class SymmetricKernel {
  public:
+  using Number = Scalar;
+
   explicit SymmetricKernel(const ErrorMatrix& P, UpdateForm form = UpdateForm::kJoseph)
       : form_(form) {
     P_.setZero();
@@ -48,10 +51,11 @@ class SymmetricKernel {
   void propagate(const ErrorDynamics& step, const ProcessNoise& noise);
 
   double update(ErrorVector& x_hat, const ErrorVector& h, double z);
-  void update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+  double update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
 
  private:
-  bool take_at_once(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+  std::optional<Scalar> take_at_once(ErrorVector& x_hat, const MeasurementRows& H,
+                                     const MeasurementValues& z);
 
   PaddedMatrix<Scalar> P_;
   UpdateForm form_;

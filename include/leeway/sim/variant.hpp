@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "leeway/filters/covariance_kernel.hpp"
@@ -29,6 +30,9 @@ struct Variant {
 
 /// Whether the kernel has a choice of update forms.
 bool has_update_forms(KernelForm kernel);
+
+/// "two-sample".
+std::string_view name(Scheme scheme);
 
 /// Names every choice that the variant has, and no other: two variants of a name run alike.
 /// "two-sample/normal/turning/50Hz symmetric/joseph/double/0.1s". No comma, no quote.

@@ -1,0 +1,86 @@
+/// @file
+/// The failure atlas: scenes that are each built to break a method, run against every way of
+/// running the filter, and what became of it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leeway::sim {
+
+enum class AtlasVerdict { kSurvives, kDegrades, kFails };
+
+/// What a variant is of: the columns of the matrix of all scenes.
+enum class AtlasGroup {
+  kNavigator,
+  kEkf,
+  kDoubleKernel,  ///< KernelEkf in double precision
+  kFloatKernel,   ///< and in single
+  kInvariant,
+  kReset,
+  kStrapdown,   ///< mechanizations, without a filter
+  kInput,       ///< what stands before any filter: configuration, readers, time
+  kNotOffered,  ///< a method that the library does not have: what the scene shows failing
+};
+inline constexpr std::size_t kAtlasGroups = 9;
+
+std::string_view name(AtlasVerdict verdict);
+std::string_view name(AtlasGroup group);
+
+/// One variant under one condition of a scene.
+struct AtlasCell {
+  AtlasGroup group{};
+  std::string variant{};    ///< "symmetric/joseph/float". No comma, no quote; as condition
+  std::string condition{};  ///< "60 s"; empty where the scene has but one
+  double figure{};          ///< in the scene's unit; not finite: there is none, a failure
+  std::string reported{};   ///< which detectors of the library say so; empty: nobody says anything
+};
+
+/// What figures mean. A figure is the larger the worse.
+struct AtlasLimits {
+  double survives{};     ///< up to here
+  double degrades{};     ///< up to here; beyond, it fails
+  std::string reason{};  ///< of both, in a sentence
+};
+
+struct AtlasOptions {
+  bool brief{false};  ///< fewer trials, shorter drives: for tests
+};
+
+struct AtlasScene {
+  std::string key{};     ///< "parked-rtk": of the command line, and the page docs/atlas/KEY.md
+  std::string title{};   ///< "Parked with RTK fixes"
+  std::string figure{};  ///< what the figure is: "horizontal error over the claimed sigma"
+  std::string unit{};    ///< "m"; "" for ratios
+  AtlasLimits limits{};
+  /// Same options, same cells. Seeds 1 to N. Safe to call from any thread.
+  std::function<std::vector<AtlasCell>(const AtlasOptions&)> run{};
+};
+
+AtlasVerdict verdict_of(const AtlasLimits& limits, double figure);
+
+/// A variant that the library offers fails, and no detector says so.
+bool fails_silently(const AtlasLimits& limits, const AtlasCell& cell);
+
+/// All scenes, by the order of the pages.
+const std::vector<AtlasScene>& atlas_scenes();
+
+/// The scenes of these keys, in the order of atlas_scenes(); all for none.
+/// @throws Error for an unknown key: the nearest one, and all there are.
+std::vector<AtlasScene> atlas_scenes(const std::vector<std::string>& keys);
+
+struct AtlasResult {
+  AtlasScene scene{};
+  std::vector<AtlasCell> cells{};
+};
+
+/// Runs the scenes. The same bits on any number of threads.
+/// @param threads  0: as many as there are processors
+std::vector<AtlasResult> run_atlas(const std::vector<AtlasScene>& scenes,
+                                   const AtlasOptions& options, int threads = 0,
+                                   const std::function<void(double fraction)>& progress = {});
+
+}  // namespace leeway::sim

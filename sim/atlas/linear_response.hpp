@@ -1,0 +1,46 @@
+/// @file
+/// What an error at the start becomes without fixes: truly, by paired runs of the strapdown, and by
+/// the claim of a filter that knows of that error alone.
+#pragma once
+
+#include <vector>
+
+#include "leeway/filters/error_state.hpp"
+#include "leeway/imu.hpp"
+#include "leeway/sim/trajectory.hpp"
+#include "watched_filter.hpp"
+
+namespace leeway::sim {
+
+/// Perfect sensors on a trajectory, and errors that an estimate starts with: each of them one
+/// sigma, independent of the others, and small enough for their effect to be linear.
+class LinearResponse {
+ public:
+  LinearResponse(const Trajectory& trajectory, double rate_hz, double duration_s,
+                 std::vector<ErrorVector> start_errors);
+
+  const Estimate& start() const { return start_; }
+
+  /// Second moment of the error at the end, by runs of the strapdown that start wrong and right.
+  ErrorMatrix truth() const;
+
+  /// What a filter of this kind claims at the end, told of no noise. A failure to claim is NaN.
+  ErrorMatrix claim(const AtlasColumn& column) const;
+
+  /// Second moment of the error at the end, by a transition matrix.
+  ErrorMatrix carried(const ErrorMatrix& Phi) const;
+
+ private:
+  Estimate strapdown_from(const Estimate& start) const;
+  ErrorMatrix start_moment() const;
+
+  std::vector<ErrorVector> start_errors_;
+  std::vector<ImuIncrement> imu_;
+  Estimate start_;
+};
+
+/// How far apart a claimed and a true size are, as a factor of at least 1. Infinite unless both are
+/// above zero.
+double factor_between(double claimed, double truth);
+
+}  // namespace leeway::sim

@@ -1,0 +1,55 @@
+#include "estimator_scenes.hpp"
+#include "leeway/sim/trajectories.hpp"
+#include "trials.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kPriorM = 1000.0;
+constexpr double kFixM = 0.01;
+constexpr double kSettledS = 30.0;
+
+/// At rest. The first fix shrinks the variance of the position by 1e10, which float has no digits
+/// for.
+Scene kilometre_prior() {
+  Scene scene;
+  scene.name = "kilometre prior, centimetre fix";
+  scene.duration_s = 60.0;
+  scene.trajectory = static_trajectory({.duration_s = scene.duration_s});
+  scene.imu_rate_hz = 20.0;
+  set_imu(scene, "automotive-mems", automotive_mems_model());
+  scene.gnss.errors.position_sigma_n_m.setConstant(kFixM);
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial = InitialSigma{
+      .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kPriorM};
+  return scene;
+}
+
+double settled_error_over_fix(WatchedFilter& filter, const RecordedTrial& trial) {
+  ErrorSums sums;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    if (to_seconds(truth.nav.time) > kSettledS) sums.add(truth, now);
+  });
+  return sums.position_rms_m() / kFixM;
+}
+
+std::vector<AtlasCell> run_positive_definiteness(const AtlasOptions& options) {
+  const Scene scene = kilometre_prior();
+  return scored(atlas_columns(), scene.filter, recorded_trials(scene, options.brief ? 2 : 10), {},
+                settled_error_over_fix);
+}
+
+}  // namespace
+
+AtlasScene positive_definiteness() {
+  return {"positive-definiteness",
+          "A kilometre of prior, a centimetre of fix",
+          "RMS position error before fixes, over the sigma of a fix",
+          "",
+          {3.0, 100.0,
+           "a second after a fix the error is that of fix and filter together, within 3 sigma of "
+           "the fix; at 100 sigma the fixes are as good as unused"},
+          run_positive_definiteness};
+}
+
+}  // namespace leeway::sim

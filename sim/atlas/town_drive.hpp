@@ -1,0 +1,27 @@
+/// @file
+/// A car in turns, with a fix every second: what the scenes of times, units and sensors spoil.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "leeway/sim/atlas.hpp"
+#include "leeway/sim/scene.hpp"
+#include "trials.hpp"
+
+namespace leeway::sim {
+
+/// The square loop at 20 m/s on a car-grade MEMS IMU at 100 Hz, white fixes of 2.5 m.
+Scene town_drive(double duration_s);
+
+/// What a driver, a clock or a sensor does to the inputs of a trial. They are delivered where the
+/// trial has them, whatever times they then bear.
+using Spoil = std::function<void(RecordedTrial& trial)>;
+
+std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoil& spoil);
+
+/// RMS horizontal error before the fixes of the last so many seconds.
+Score late_horizontal_rms_m(const Scene& scene, double last_s);
+
+}  // namespace leeway::sim

@@ -1,0 +1,106 @@
+#include "trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kNoFigure = std::numeric_limits<double>::infinity();
+
+double root_mean(double sum, double epochs) { return std::sqrt(sum / epochs); }
+
+/// The names that both have.
+Reports common(const Reports& a, const Reports& b) {
+  Reports both;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()));
+  return both;
+}
+
+AtlasCell scored_column(const AtlasColumn& column, const EkfConfig& believed,
+                        const std::vector<RecordedTrial>& trials, const Score& score) {
+  AtlasCell cell{column.group, column.name, {}, 0.0, {}};
+  Reports reports;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const auto filter = column.make(believed, trials[k].start);
+    const double figure = score(*filter, trials[k]);
+    cell.figure += figure * figure;
+    reports = k == 0 ? filter->reported() : common(reports, filter->reported());
+  }
+  cell.figure = root_mean(cell.figure, static_cast<double>(trials.size()));
+  cell.reported = joined(reports);
+  return cell;
+}
+
+}  // namespace
+
+std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n) {
+  const TrialPlan plan(scene, scene.duration_s, 1);
+  std::vector<RecordedTrial> trials;
+  for (int seed = 1; seed <= n; ++seed) {
+    trials.push_back(record_trial(plan, static_cast<std::uint64_t>(seed)));
+  }
+  return trials;
+}
+
+void replay(WatchedFilter& filter, const RecordedTrial& trial, const BeforeFix& before_fix) {
+  auto next = trial.fixes.begin();
+  for (std::size_t k = 0; k < trial.imu.size(); ++k) {
+    filter.predict(trial.imu[k]);
+    if (next == trial.fixes.end() || k != next->at) continue;
+    if (before_fix && next->truth) before_fix(*next->truth, filter);
+    filter.update(next->fix);
+    ++next;
+  }
+}
+
+std::vector<AtlasCell> scored(const std::vector<AtlasColumn>& columns, const EkfConfig& believed,
+                              const std::vector<RecordedTrial>& trials,
+                              const std::string& condition, const Score& score) {
+  std::vector<AtlasCell> cells;
+  for (const AtlasColumn& column : columns) {
+    cells.push_back(scored_column(column, believed, trials, score));
+    cells.back().condition = condition;
+  }
+  return cells;
+}
+
+void ErrorSums::add(const Estimate& truth, const WatchedFilter& filter) {
+  if (!filter.has_estimate()) {
+    finite = false;
+    return;
+  }
+  const Estimate estimate = filter.estimate();
+  const auto P = filter.covariance();
+  TrialScore one;
+  score_epoch(one, truth, estimate, P ? &*P : nullptr);
+  nees += P && one.finite ? one.nees : std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Vector3d error_n_m = position_error_n_m(truth, estimate);
+  finite = finite && error_n_m.allFinite();
+  if (!finite) return;
+  epochs += 1.0;
+  position_m2 += error_n_m.squaredNorm();
+  horizontal_m2 += error_n_m.head<2>().squaredNorm();
+}
+
+double ErrorSums::position_rms_m() const {
+  return finite ? root_mean(position_m2, epochs) : kNoFigure;
+}
+
+double ErrorSums::horizontal_rms_m() const {
+  return finite ? root_mean(horizontal_m2, epochs) : kNoFigure;
+}
+
+double ErrorSums::sigma_ratio() const {
+  const double ratio = root_mean(nees, kErrorStates * epochs);
+  return finite && std::isfinite(ratio) ? ratio : kNoFigure;
+}
+
+double heading_error_rad(const Estimate& truth, const Estimate& estimate) {
+  const Eigen::Vector3d psi_e = difference(truth, estimate).segment<3>(kPsi);
+  return std::abs(psi_e.dot(down_e_at(truth.nav.r_e_m)));
+}
+
+}  // namespace leeway::sim

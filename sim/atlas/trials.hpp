@@ -1,0 +1,50 @@
+/// @file
+/// Simulated drives for the scenes that try estimators, and how a column fares on them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "../recorded_trial.hpp"
+#include "leeway/sim/scene.hpp"
+#include "watched_filter.hpp"
+
+namespace leeway::sim {
+
+/// Trials of a scene, seeds 1 to n, with the truth at every fix.
+std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n);
+
+/// Called just before a fix is used, with the truth at its time.
+using BeforeFix = std::function<void(const Estimate& truth, const WatchedFilter& filter)>;
+
+/// Runs the filter over the whole trial.
+void replay(WatchedFilter& filter, const RecordedTrial& trial, const BeforeFix& before_fix = {});
+
+/// Of a filter that has been started on a trial, the figure.
+using Score = std::function<double(WatchedFilter& filter, const RecordedTrial& trial)>;
+
+/// Each column on every trial: the root mean square of its figures, and what its detectors said in
+/// every one of the trials.
+std::vector<AtlasCell> scored(const std::vector<AtlasColumn>& columns, const EkfConfig& believed,
+                              const std::vector<RecordedTrial>& trials,
+                              const std::string& condition, const Score& score);
+
+/// Sums of errors over the fixes of a run, for figures.
+struct ErrorSums {
+  double epochs{0.0};
+  double position_m2{0.0};  ///< squared, north, east and down together
+  double horizontal_m2{0.0};
+  double nees{0.0};  ///< of 15 states; NaN once P is not positive or nothing is claimed
+  bool finite{true};
+
+  void add(const Estimate& truth, const WatchedFilter& filter);
+  double position_rms_m() const;    ///< infinite unless finite
+  double horizontal_rms_m() const;  ///< likewise
+  double sigma_ratio() const;       ///< sqrt(NEES / 15): errors over claims; infinite without
+};
+
+/// Turn about the local vertical by which the estimate's heading is off, rad, in 0 to pi.
+double heading_error_rad(const Estimate& truth, const Estimate& estimate);
+
+}  // namespace leeway::sim

@@ -1,0 +1,52 @@
+#include "vibration.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+
+#include "free_run.hpp"
+#include "leeway/sim/increment_table.hpp"
+#include "leeway/sim/variant.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kVibrationS = 10.0;
+
+std::vector<double> frequencies_hz(const AtlasOptions& options) {
+  return options.brief ? std::vector{5.0, 20.0, 60.0}
+                       : std::vector{1.0, 5.0, 10.0, 20.0, 30.0, 60.0};
+}
+
+std::vector<double> imu_rates_hz(const AtlasOptions& options) {
+  return options.brief ? std::vector{100.0, 400.0} : std::vector{50.0, 100.0, 200.0, 400.0};
+}
+
+}  // namespace
+
+std::vector<AtlasCell> vibration_cells(
+    const std::function<Trajectory(double)>& motion,
+    const std::function<double(const NavState&, const NavState&, double)>& figure,
+    const AtlasOptions& options) {
+  constexpr std::array kSchemes{Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4};
+  std::vector<AtlasCell> cells;
+  for (const double frequency_hz : frequencies_hz(options)) {
+    Trajectory trajectory = motion(frequency_hz);
+    trajectory.duration_s = kVibrationS;
+    trajectory.period_s = 1.0;
+    const NavState start = truth_at(trajectory, 0.0).nav;
+    const NavState truth = truth_at(trajectory, kVibrationS).nav;
+    for (const double rate_hz : imu_rates_hz(options)) {
+      const IncrementTable increments(trajectory, rate_hz, kVibrationS, 1);
+      for (const Scheme scheme : kSchemes) {
+        const FreeRun run = free_run(start, increments, {scheme});
+        cells.push_back({AtlasGroup::kStrapdown, std::string(name(scheme)),
+                         fmt::format("{:g} Hz at {:g} Hz", frequency_hz, rate_hz),
+                         figure(truth, run.nav, kVibrationS), run.reported});
+      }
+    }
+  }
+  return cells;
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,235 @@
+#include "watched_filter.hpp"
+
+#include <utility>
+
+#include "../visit_filter.hpp"
+#include "leeway/filters/nis_monitor.hpp"
+
+namespace leeway::sim {
+namespace {
+
+/// What can be seen of any filter by its estimate and covariance.
+class CommonDetectors {
+ public:
+  explicit CommonDetectors(const ImuErrorModel& imu) : imu_(imu) {}
+
+  void note(const GnssFix& fix, const Estimate& estimate, const ErrorMatrix& P) {
+    if (!is_positive_definite(P)) reports_.insert("P not positive");
+    const bool at_rest =
+        fix.velocity && fix.velocity->v_e_mps.norm() < AlignmentConfig{}.rest_speed_mps;
+    if (at_rest && rest_hides_heading(imu_, estimate, P)) reports_.insert("rest hides heading");
+  }
+
+  void note_unusable() { reports_.insert("fix unusable"); }
+  void note_gated() { reports_.insert("gated"); }
+  void note_noise_lost() { reports_.insert("noise lost"); }
+  void note_nis(double nis, int dof) { nis_.note(nis, dof); }
+
+  Reports reports() const {
+    Reports all = reports_;
+    if (nis_.is_high()) all.insert("NIS high");
+    if (nis_.is_low()) all.insert("NIS low");
+    return all;
+  }
+
+ private:
+  ImuErrorModel imu_;
+  NisMonitor nis_{};
+  Reports reports_{};
+};
+
+/// KernelEkf of any kind.
+template <class Filter>
+class WatchedKernelEkf final : public WatchedFilter {
+ public:
+  WatchedKernelEkf(Filter filter, const ImuErrorModel& imu)
+      : filter_(std::move(filter)), detectors_(imu) {}
+
+  void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
+
+  void update(const GnssFix& fix) override {
+    const FusedFix fused = filter_.update(fix);
+    if (fused.dof == 0) return detectors_.note_unusable();
+    detectors_.note_nis(fused.nis, fused.dof);
+    detectors_.note(fix, filter_.estimate(), filter_.covariance());
+    if (filter_.noise_rounding() > kNoiseLost) detectors_.note_noise_lost();
+  }
+
+  Estimate estimate() const override { return filter_.estimate(); }
+  std::optional<ErrorMatrix> covariance() const override { return filter_.covariance(); }
+  Reports reported() const override { return detectors_.reports(); }
+
+ private:
+  static constexpr double kNoiseLost = 0.5;
+
+  Filter filter_;
+  CommonDetectors detectors_;
+};
+
+class WatchedResetFilter final : public WatchedFilter {
+ public:
+  explicit WatchedResetFilter(const ResetFilter& filter) : filter_(filter) {}
+  void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
+  void update(const GnssFix& fix) override { filter_.update(fix); }
+  Estimate estimate() const override { return filter_.estimate(); }
+  std::optional<ErrorMatrix> covariance() const override { return std::nullopt; }
+  Reports reported() const override { return {"no claim"}; }
+
+ private:
+  ResetFilter filter_;
+};
+
+class WatchedEkf final : public WatchedFilter {
+ public:
+  WatchedEkf(const Ekf& filter, const FixTrust& trust)
+      : filter_(filter), trust_(trust), detectors_(filter.config().imu) {}
+
+  void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
+
+  void update(const GnssFix& fix) override {
+    const UpdateReport report = filter_.update(fix, trust_);
+    if (report.outcome == UpdateReport::Outcome::kUnusable) return detectors_.note_unusable();
+    if (report.outcome == UpdateReport::Outcome::kGated) detectors_.note_gated();
+    detectors_.note_nis(report.nis, report.dof);
+    detectors_.note(fix, filter_.estimate(), filter_.covariance());
+  }
+
+  Estimate estimate() const override { return filter_.estimate(); }
+  std::optional<ErrorMatrix> covariance() const override { return filter_.covariance(); }
+  Reports reported() const override { return detectors_.reports(); }
+
+ private:
+  Ekf filter_;
+  FixTrust trust_;
+  CommonDetectors detectors_;
+};
+
+class WatchedNavigator final : public WatchedFilter {
+ public:
+  explicit WatchedNavigator(const Navigator& navigator) : navigator_(navigator) {}
+
+  void predict(const ImuIncrement& inc) override {
+    const Verdict verdict = navigator_.push(inc);
+    const bool is_integrated = verdict == Verdict::kAccepted || verdict == Verdict::kAligning;
+    if (!is_integrated) reports_.insert(std::string(name(verdict)));
+  }
+
+  void update(const GnssFix& fix) override {
+    note_state();
+    const Verdict verdict = navigator_.push(fix);
+    if (verdict != Verdict::kFused) reports_.insert(std::string(name(verdict)));
+    note_state();
+  }
+
+  bool has_estimate() const override { return navigator_.aligned(); }
+  Estimate estimate() const override { return navigator_.filter().estimate(); }
+  std::optional<ErrorMatrix> covariance() const override {
+    return navigator_.filter().covariance();
+  }
+
+  Reports reported() const override {
+    Reports all = reports_;
+    const Health health = navigator_.health();
+    if (health.repairs > 0) all.insert("repaired");
+    if (health.resets > 0) all.insert("reset");
+    if (health.realignments > 0) all.insert("realigned");
+    return all;
+  }
+
+ private:
+  void note_state() {
+    const Health::State state = navigator_.health().state;
+    if (state != Health::State::kAligned) reports_.insert(std::string(name(state)));
+  }
+
+  Navigator navigator_;
+  Reports reports_{};
+};
+
+AtlasGroup group_of(const Variant& variant) {
+  if (variant.estimator == Estimator::kReset) return AtlasGroup::kReset;
+  if (variant.estimator == Estimator::kInvariantEkf) return AtlasGroup::kInvariant;
+  return variant.precision == Precision::kFloat ? AtlasGroup::kFloatKernel
+                                                : AtlasGroup::kDoubleKernel;
+}
+
+AtlasColumn navigator_column() {
+  return {AtlasGroup::kNavigator, "Navigator",
+          [](const EkfConfig& config, const TrialStart& start) {
+            Navigator navigator({.filter = config});
+            navigator.start(start.estimate, start.P);
+            return watched(navigator);
+          }};
+}
+
+AtlasColumn ekf_column() {
+  return {AtlasGroup::kEkf, "Ekf", [](const EkfConfig& config, const TrialStart& start) {
+            return watched(Ekf(config, start.estimate, start.P));
+          }};
+}
+
+std::vector<Variant> kernel_variants() {
+  std::vector<Variant> variants;
+  for (const Variant& v : covariance_variants()) {
+    if (v.covariance_interval_s == Variant{}.covariance_interval_s) variants.push_back(v);
+  }
+  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
+    for (const KernelForm kernel : {KernelForm::kSymmetric, KernelForm::kUd}) {
+      variants.push_back(
+          {.estimator = Estimator::kInvariantEkf, .kernel = kernel, .precision = precision});
+    }
+  }
+  variants.push_back({.estimator = Estimator::kReset});
+  return variants;
+}
+
+}  // namespace
+
+std::string joined(const Reports& reports) {
+  std::string text;
+  for (const std::string& report : reports) text += (text.empty() ? "" : "; ") + report;
+  return text;
+}
+
+std::unique_ptr<WatchedFilter> watched(const Ekf& filter, const FixTrust& trust) {
+  return std::make_unique<WatchedEkf>(filter, trust);
+}
+
+std::unique_ptr<WatchedFilter> watched(const Navigator& navigator) {
+  return std::make_unique<WatchedNavigator>(navigator);
+}
+
+AtlasColumn column_of(const Variant& variant) {
+  // Of "strapdown covariance" the second word.
+  const std::string both = name(variant, 1.0);
+  return {group_of(variant), both.substr(both.find(' ') + 1),
+          [variant](const EkfConfig& config, const TrialStart& start) {
+            return visit_filter(variant, config, start,
+                                [&config](auto filter) -> std::unique_ptr<WatchedFilter> {
+                                  using Filter = decltype(filter);
+                                  if constexpr (std::same_as<Filter, ResetFilter>) {
+                                    return std::make_unique<WatchedResetFilter>(filter);
+                                  } else {
+                                    return std::make_unique<WatchedKernelEkf<Filter>>(
+                                        std::move(filter), config.imu);
+                                  }
+                                });
+          }};
+}
+
+std::vector<AtlasColumn> atlas_columns() {
+  std::vector<AtlasColumn> columns{navigator_column(), ekf_column()};
+  for (const Variant& variant : kernel_variants()) columns.push_back(column_of(variant));
+  return columns;
+}
+
+std::vector<AtlasColumn> few_atlas_columns() {
+  return {navigator_column(),
+          ekf_column(),
+          column_of({}),
+          column_of({.precision = Precision::kFloat}),
+          column_of({.estimator = Estimator::kInvariantEkf}),
+          column_of({.estimator = Estimator::kReset})};
+}
+
+}  // namespace leeway::sim
