@@ -85,10 +85,9 @@ void print_consistency(const sim::Scene& scene, const sim::CampaignResult& r) {
   table.print();
   if (!errs_beyond_biases(scene.imu)) return;
   fmt::print(
-      "\nThe IMU has scale factors, misalignments or g-sensitivity. The filter takes them for "
-      "bias, "
-      "as far as\nthey act like it; the NEES compares that with the bias alone, and is the larger "
-      "for it.\n");
+      "\nThe IMU has scale factors, misalignments or g-sensitivity. As far as they act like a\n"
+      "bias the filter takes them for one; the NEES compares that with the bias alone, and is\n"
+      "the larger for it.\n");
 }
 
 void print_report(const sim::Scene& scene, const sim::CampaignResult& r) {
