@@ -4,7 +4,9 @@
 #include <sstream>
 #include <string>
 
+#include "leeway/earth.hpp"
 #include "leeway/error.hpp"
+#include "leeway/filters/horizontal.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/random.hpp"
 #include "leeway/sim/receiver.hpp"
@@ -47,8 +49,10 @@ Ekf started(const TrialPlan& plan, std::uint64_t seed) {
 
 class Trial {
  public:
-  Trial(const TrialPlan& plan, std::uint64_t seed)
+  Trial(const TrialPlan& plan, std::uint64_t seed,
+        const std::function<void(const TrialEpoch&)>& observer)
       : plan_(plan),
+        observer_(observer),
         sensor_(plan.scene().imu, Random(seed, 0, kImuStream)),
         receiver_(plan.scene().trajectory, plan.scene().gnss, seed),
         filter_(started(plan, seed)) {
@@ -60,8 +64,10 @@ class Trial {
  private:
   void take_fix(const TrialPlan::Fix& fix);
   void score(const Ekf& filter);
+  void tell();
 
   const TrialPlan& plan_;
+  const std::function<void(const TrialEpoch&)>& observer_;
   ImuErrorSimulator sensor_;
   Receiver receiver_;
   Ekf filter_;
@@ -92,6 +98,7 @@ TrialScore Trial::run() {
 }
 
 void Trial::take_fix(const TrialPlan::Fix& fix) {
+  if (observer_) tell();
   if (fix.scored && fix.arrives == fix.at) score(filter_);
   if (fix.scored && fix.arrives > fix.at) {
     without_fix_ = filter_;
@@ -118,6 +125,17 @@ void Trial::score(const Ekf& filter) {
   truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
   const ErrorMatrix P = filter.covariance();
   score_epoch(score_, truth, filter.estimate(), &P);
+}
+
+void Trial::tell() {
+  const NavState& nav = filter_.estimate().nav;
+  const double t_s = to_seconds(nav.time);
+  const NavState truth = truth_at(plan_.scene().trajectory, t_s).nav;
+  const Eigen::Vector3d error_n_m =
+      ned_to_ecef(geodetic_from_ecef(truth.r_e_m)).transpose() * (nav.r_e_m - truth.r_e_m);
+  const Eigen::Matrix2d P_ne_m2 =
+      horizontal_covariance(nav.r_e_m, filter_.covariance().block<3, 3>(kDr, kDr));
+  observer_({t_s, error_n_m.head<2>().norm(), horizontal_error_m(HorizontalMetric::kR95, P_ne_m2)});
 }
 
 }  // namespace
@@ -147,6 +165,9 @@ TrialPlan::TrialPlan(const Scene& scene, std::optional<double> score_last_s, int
   }
 }
 
-TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed) { return Trial(plan, seed).run(); }
+TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed,
+                     const std::function<void(const TrialEpoch&)>& observer) {
+  return Trial(plan, seed, observer).run();
+}
 
 }  // namespace leeway::sim

@@ -6,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "campaign_fan.hpp"
 #include "commands.hpp"
 #include "leeway/sim/campaign.hpp"
 #include "leeway/sim/imu_simulator.hpp"
@@ -147,7 +148,9 @@ int run_on(const CommandOptions& options, const sim::Ranks& ranks) {
     print_speed(scene, result, cores_of(options, ranks),
                 std::chrono::duration<double>(Clock::now() - start).count());
   }
-  write_report(options.report, answer);
+  if (!options.report.empty()) {
+    write_report(options.report, answer, campaign_fan(scene, options.campaign.threads));
+  }
   return result.epochs > 0 ? kSuccess : kNoAnswer;
 }
 

@@ -220,13 +220,12 @@ Json list_json() {
 
 int run(const ImuOptions& options) {
   if (options.name.empty()) {
-    options.json ? print_json(answer_json("imu", Json::object(), list_json())) : print_list();
+    options.json ? print_json("imu", Json::object(), list_json()) : print_list();
     return kSuccess;
   }
   const Shown s = shown(options);
   if (options.json) {
-    print_json(
-        answer_json("imu", {{"name", options.name}, {"range", options.range}}, shown_json(s)));
+    print_json("imu", {{"name", options.name}, {"range", options.range}}, shown_json(s));
   } else {
     print_report(s);
   }

@@ -85,6 +85,10 @@ std::string text_of(const Json& json, int indent) {
 
 void print_json(const Json& answer) { fmt::print("{}\n", text_of(answer, 2)); }
 
+void print_json(std::string_view command, Json input, Json results) {
+  print_json(answer_json(command, std::move(input), std::move(results)));
+}
+
 void write_file(const std::filesystem::path& path, std::string_view content) {
   std::filesystem::path partial = path;
   partial += ".partial";

@@ -51,6 +51,7 @@ std::string text_of(const Json& json, int indent = -1);
 
 /// Exactly this object on stdout.
 void print_json(const Json& answer);
+void print_json(std::string_view command, Json input, Json results);
 
 /// Writes a file as a whole or not at all. @throws WriteFailure
 void write_file(const std::filesystem::path& path, std::string_view content);

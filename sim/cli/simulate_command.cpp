@@ -146,8 +146,7 @@ int run(SimulateOptions options) {
     return written;
   });
   if (options.json) {
-    print_json(
-        answer_json("simulate", input_json(options, scene), results_json(logs, description)));
+    print_json("simulate", input_json(options, scene), results_json(logs, description));
   } else {
     print_report(options, scene, logs);
   }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -65,8 +66,17 @@ struct TrialScore {
   std::int64_t gated{0};
 };
 
+/// A moment just before a fix is used, at the fix's own time whatever the latency.
+struct TrialEpoch {
+  double t_s{};
+  double error_h_m{};
+  double claimed_r95_m{};  ///< the radius that 95 % of such errors stay within, says the filter
+};
+
 /// The filter is told scene.filter and starts from its known biases, zero spread bias, and a start
 /// error drawn from initial_sigma(scene); the sensors are scene.imu. Same plan and seed, same bits.
-TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed);
+/// @param observer  called before every fix, scored or not
+TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed,
+                     const std::function<void(const TrialEpoch&)>& observer = {});
 
 }  // namespace leeway::sim

@@ -12,8 +12,8 @@ export interface Axis {
 }
 
 /**
- * line: in the order of its points; band: filled from y to high, or a line from least to greatest;
- * bars: along x from 0, at categories of y; cells: squares at categories of x and y.
+ * line: in the order of its points; envelope: from y to high where points are close, x ascending;
+ * band: filled from y to high; bars: along x from 0, at categories of y; cells: at categories of both.
  */
 export type Style = "line" | "envelope" | "band" | "points" | "bars" | "cells";
 
@@ -26,6 +26,8 @@ export interface Series {
   readonly y: Values;
   readonly high?: Values;
   readonly dashed?: boolean;
+  /** Bars that lie on wider ones. */
+  readonly thin?: boolean;
   /** Markers on a line. */
   readonly marked?: boolean;
   /** What a point is called. */
@@ -74,9 +76,10 @@ export interface Window {
 
 /** Everything in sight, with a margin. */
 export function wholeOf(chart: Chart): Window {
+  const origin = chart.series.some((s) => s.style === "bars") ? [[0]] : [];
   const levels = (chart.levels ?? []).map((level) => level.at);
   return {
-    x: extent(chart.x, chart.series.map((s) => s.x)),
+    x: extent(chart.x, [...chart.series.map((s) => s.x), ...origin]),
     y: extent(chart.y, [...chart.series.flatMap((s) => (s.high ? [s.y, s.high] : [s.y])), levels]),
   };
 }

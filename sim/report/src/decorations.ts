@@ -63,7 +63,7 @@ function cellTexts(u: uPlot, ctx: CanvasRenderingContext2D, series: Series): voi
   const room = Math.abs(u.valToPos(1, "x", true) - u.valToPos(0, "x", true)) - 6;
   ctx.textAlign = "center";
   ctx.textBaseline = "middle";
-  ctx.fillStyle = "#fff";
+  ctx.fillStyle = theme().onMark;
   series.texts?.forEach((text, i) => {
     if (ctx.measureText(text).width > room) return;
     const x = u.valToPos(series.x[i] as number, "x", true);

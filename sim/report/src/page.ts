@@ -21,6 +21,7 @@ export function pageOf(report: Report, view: View): HTMLElement {
     ...view.tables.map(tableOf),
     section("trust", "How sure is this?", view.trust),
     element("section", { id: "charts" }, ...view.charts.map(figureOf)),
+    ...(view.details ?? []).map(folded),
     madeBy(report),
   );
 }
@@ -51,6 +52,10 @@ function tableOf(grid: Grid): HTMLElement {
     element("tbody", {}, ...rows),
   );
   return element("div", { class: "scroll", tabindex: "0" }, table);
+}
+
+function folded(grid: Grid): HTMLElement {
+  return element("details", {}, element("summary", {}, grid.caption), tableOf(grid));
 }
 
 function madeBy(report: Report): HTMLElement {

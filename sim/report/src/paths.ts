@@ -129,11 +129,10 @@ function marker(path: Path2D, shape: number, x: number, y: number, r: number): v
   }
 }
 
-/** A series with values to half of its category, so that two lie side by side. */
 function bars(u: uPlot, s: Series): Path2D {
   const path = new Path2D();
   const origin = u.scales["x"]?.distr === 3 ? (u.scales["x"].min ?? 1) : 0;
-  const half = Math.abs(yPx(u, 1) - yPx(u, 0)) * (s.dashed ? 0.16 : 0.34);
+  const half = Math.abs(yPx(u, 1) - yPx(u, 0)) * (s.thin ? 0.12 : 0.34);
   for (let i = 0; i < s.x.length; ++i) {
     if (!Number.isFinite(at(s.x, i))) continue;
     const [from, to] = [xPx(u, origin), xPx(u, at(s.x, i))];

@@ -8,6 +8,8 @@ export interface Theme {
   readonly grid: string;
   readonly level: string;
   readonly shade: string;
+  /** Of text on a mark. */
+  readonly onMark: string;
   readonly palette: readonly string[];
 }
 
@@ -17,6 +19,7 @@ const kThemes: Record<"light" | "dark", Theme> = {
     grid: "#0000001c",
     level: "#777",
     shade: "#8888882e",
+    onMark: "#fff",
     palette: kLight,
   },
   dark: {
@@ -24,6 +27,7 @@ const kThemes: Record<"light" | "dark", Theme> = {
     grid: "#ffffff22",
     level: "#999",
     shade: "#aaaaaa30",
+    onMark: "#16171a",
     palette: kDark,
   },
 };

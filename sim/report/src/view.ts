@@ -18,6 +18,8 @@ export interface View {
   /** What the answer rests on, and how sure it is. */
   readonly trust: readonly string[];
   readonly charts: readonly Chart[];
+  /** Tables too long to stand above the charts. */
+  readonly details?: readonly Grid[];
 }
 
 export type MakeView = (report: Report) => View;
