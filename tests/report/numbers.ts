@@ -72,14 +72,15 @@ interface CompareRow {
 }
 
 function checkCompare(results: unknown, tables: Tables): void {
-  const rows = results as CompareRow[];
+  // What lost its numbers is told in words.
+  const rows = (results as CompareRow[]).filter((row) => row.rms_horizontal_m !== null);
   const drawn = tables.get("cost-against-error") ?? [];
   assert.equal(drawn.length, rows.length);
   for (const row of rows) {
     const point = drawn.find((r) => r["name"]?.split(" (")[0] === row.variant);
     assert.equal(numberIn(point, "cost per second of IMU data, ns"), row.cost_ns_per_s);
     const rms_m = numberIn(point, "horizontal RMS error before a fix, m");
-    assert.equal(rms_m, row.rms_horizontal_m ?? NaN);
+    assert.equal(rms_m, row.rms_horizontal_m);
     assert.equal(point?.["series"] === "front", row.front);
   }
 }

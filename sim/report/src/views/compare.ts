@@ -34,8 +34,9 @@ export function compareView(report: Report): View {
         `${short(report.input["repeat"] as number)} runs, all variants in turn.`,
       "A variant is dominated by another that errs no more and costs less beyond the spread, or " +
         "errs less and costs no more.",
+      ...lost(rows.filter((row) => !hasError(row))),
     ],
-    charts: [scatter(rows, front)],
+    charts: [scatter(rows.filter(hasError), front)],
   };
 }
 
@@ -51,6 +52,15 @@ function answer(rows: readonly Row[], front: readonly Row[]): string[] {
     `${front.length} of ${rows.length} variants are on the front: whoever wants less error than ` +
       "one of them pays more.",
   ];
+}
+
+/** Runs that ended in numbers that are none have no place in the chart. */
+const hasError = (row: Row): boolean => row.rms_horizontal_m !== null;
+
+function lost(rows: readonly Row[]): string[] {
+  if (rows.length === 0) return [];
+  const names = rows.map((row) => row.variant).join("; ");
+  return [`Lost its numbers in every trial, and is not in the chart: ${names}.`];
 }
 
 const microseconds = (row: Row): string => withUnit(row.cost_ns_per_s / 1000, "µs");
