@@ -221,6 +221,8 @@ Health Navigator::health() const {
   health.velocity_nis_ratio = f.velocity_noise().nis_ratio();
   health.position_sigma_scale = f.position_noise().sigma_scale();
   health.velocity_sigma_scale = f.velocity_noise().sigma_scale();
+  health.correlated_fixes =
+      config_.filter.gnss_correlation_s == 0.0 && f.position_noise().errors_last();
   const double ratio = std::max(health.position_nis_ratio, health.velocity_nis_ratio);
   health.optimistic_by = std::sqrt(std::max(1.0, ratio));
   using State = Health::State;

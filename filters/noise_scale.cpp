@@ -22,6 +22,10 @@ void average(double& mean, std::int64_t& count, double value) {
 
 }  // namespace
 
+bool NoiseScale::errors_last() const {
+  return change_count_ >= kWindow && change_ratio_ < kBandLow;
+}
+
 void NoiseScale::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                       double nis) {
   average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestNisRatio));

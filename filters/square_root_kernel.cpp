@@ -1,6 +1,7 @@
 #include "leeway/filters/square_root_kernel.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "lanes.hpp"
 #include "ud_factors.hpp"
@@ -45,9 +46,10 @@ void SquareRootKernel<Scalar>::propagate(const Transition& Phi, const ProcessNoi
     const Scalar norm = std::sqrt(lanes::dot<Scalar>(W[i], W[i], pivot + 1));
     const Scalar last = W[i][pivot];
     S_(i, i) = last > 0 ? -norm : norm;
-    if (norm == 0) continue;
     W[i][pivot] -= S_(i, i);
-    const Scalar inverse = 1 / (norm * (norm + std::abs(last)));
+    // Below the smallest normal number there is nothing to reflect, and no finite inverse.
+    const Scalar square = norm * (norm + std::abs(last));
+    const Scalar inverse = square >= std::numeric_limits<Scalar>::min() ? 1 / square : Scalar{0};
     for (int j = 0; j < i; ++j) {
       const Scalar share = inverse * lanes::dot<Scalar>(W[i], W[j], pivot + 1);
       lanes::add_scaled<Scalar>(W[j], -share, W[i], pivot + 1);

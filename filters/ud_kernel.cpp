@@ -1,5 +1,7 @@
 #include "leeway/filters/ud_kernel.hpp"
 
+#include <limits>
+
 #include "lanes.hpp"
 #include "ud_factors.hpp"
 #include "weighted_columns.hpp"
@@ -36,7 +38,9 @@ void UdKernel<Scalar>::propagate(const Transition& Phi, const ProcessNoise& nois
     typename lanes::WeightedColumns<Scalar>::Row weighted;
     for (int k = 0; k < kWeightedColumns; ++k) weighted[k] = weight[k] * W[j][k];
     D_(j) = lanes::dot<Scalar>(weighted, W[j], kWeightedColumns);
-    const Scalar inverse = D_(j) > 0 ? 1 / D_(j) : Scalar{0};
+    // The inverse of a number below the smallest normal one may be infinite.
+    const bool has_inverse = D_(j) >= std::numeric_limits<Scalar>::min();
+    const Scalar inverse = has_inverse ? 1 / D_(j) : Scalar{0};
     for (int i = 0; i < j; ++i) {
       U_(i, j) = inverse * lanes::dot<Scalar>(weighted, W[i], kWeightedColumns);
       lanes::add_scaled<Scalar>(W[i], -U_(i, j), W[j], kWeightedColumns);

@@ -1,8 +1,10 @@
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "estimator_scenes.hpp"
 #include "leeway/filters/gnss_measurement.hpp"
+#include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "linear_response.hpp"
 
@@ -23,11 +25,14 @@ TrialStart independent_start() {
   return start;
 }
 
-GnssFix whole_fix(const TrialStart& start) {
+/// As far from the estimate as both sigmas let expect.
+GnssFix whole_fix(const TrialStart& start, Time time) {
   GnssFix fix;
-  fix.time = start.estimate.nav.time;
-  fix.position = {start.estimate.nav.r_e_m, kFixM * kFixM * Eigen::Matrix3d::Identity()};
-  fix.velocity = {start.estimate.nav.v_e_mps, kFixMps * kFixMps * Eigen::Matrix3d::Identity()};
+  fix.time = time;
+  fix.position = {start.estimate.nav.r_e_m.array() + std::hypot(kPriorM, kFixM),
+                  kFixM * kFixM * Eigen::Matrix3d::Identity()};
+  fix.velocity = {start.estimate.nav.v_e_mps.array() + std::hypot(kPriorMps, kFixMps),
+                  kFixMps * kFixMps * Eigen::Matrix3d::Identity()};
   return fix;
 }
 
@@ -52,7 +57,7 @@ double worst_factor(const ErrorMatrix& P) {
 
 /// The fix without one of its rows: (P^-1 + H^T R^-1 H)^-1 with what is left of H.
 double factor_without_row(const TrialStart& start, int row) {
-  Measurement m = gnss_measurement(whole_fix(start), start.estimate, Eigen::Vector3d::Zero(),
+  Measurement m = gnss_measurement(whole_fix(start, {}), start.estimate, Eigen::Vector3d::Zero(),
                                    Eigen::Vector3d::Zero());
   m.H.row(row).setZero();
   const ErrorMatrix information = start.P.inverse() + m.H.transpose() * m.R.inverse() * m.H;
@@ -61,11 +66,14 @@ double factor_without_row(const TrialStart& start, int row) {
 
 std::vector<AtlasCell> run_dead_row(const AtlasOptions& /*options*/) {
   const TrialStart start = independent_start();
+  // Short: what it adds to the variances is below the limit.
+  const ImuIncrement inc = true_increment(static_trajectory(), 0.0, 0.01);
   std::vector<AtlasCell> cells;
   for (const AtlasColumn& column : atlas_columns()) {
     if (column.group == AtlasGroup::kReset) continue;  // it has no variances
     const auto filter = column.make(EkfConfig{.imu = {}, .gnss_correlation_s = 0.0}, start);
-    filter->update(whole_fix(start));
+    filter->predict(inc);
+    filter->update(whole_fix(start, inc.time));
     cells.push_back({column.group,
                      column.name,
                      {},

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace leeway::sim {
 namespace {
@@ -22,15 +24,22 @@ Reports common(const Reports& a, const Reports& b) {
 AtlasCell scored_column(const AtlasColumn& column, const EkfConfig& believed,
                         const std::vector<RecordedTrial>& trials, const Score& score) {
   AtlasCell cell{column.group, column.name, {}, 0.0, {}};
-  Reports reports;
-  for (std::size_t k = 0; k < trials.size(); ++k) {
-    const auto filter = column.make(believed, trials[k].start);
-    const double figure = score(*filter, trials[k]);
+  std::vector<std::pair<double, Reports>> outcomes;
+  for (const RecordedTrial& trial : trials) {
+    const auto filter = column.make(believed, trial.start);
+    const double figure = score(*filter, trial);
+    outcomes.emplace_back(figure, filter->reported());
     cell.figure += figure * figure;
-    reports = k == 0 ? filter->reported() : common(reports, filter->reported());
   }
   cell.figure = root_mean(cell.figure, static_cast<double>(trials.size()));
-  cell.reported = joined(reports);
+  // Rounding must not leave out trials that are all alike.
+  const double bad = cell.figure * (1.0 - 1e-9);
+  std::optional<Reports> reports;
+  for (const auto& [figure, said] : outcomes) {
+    if (figure < bad) continue;
+    reports = reports ? common(*reports, said) : said;
+  }
+  if (reports) cell.reported = joined(*reports);
   return cell;
 }
 
@@ -96,6 +105,17 @@ double ErrorSums::horizontal_rms_m() const {
 double ErrorSums::sigma_ratio() const {
   const double ratio = root_mean(nees, kErrorStates * epochs);
   return finite && std::isfinite(ratio) ? ratio : kNoFigure;
+}
+
+double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
+  double ratio = kNoFigure;
+  replay(filter, trial, [&ratio](const Estimate& truth, const WatchedFilter& now) {
+    ratio = kNoFigure;
+    if (!now.has_estimate()) return;
+    const auto sigma_rad = now.heading_sigma_rad();
+    if (sigma_rad) ratio = heading_error_rad(truth, now.estimate()) / *sigma_rad;
+  });
+  return ratio;
 }
 
 double heading_error_rad(const Estimate& truth, const Estimate& estimate) {

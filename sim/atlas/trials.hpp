@@ -25,7 +25,7 @@ void replay(WatchedFilter& filter, const RecordedTrial& trial, const BeforeFix& 
 using Score = std::function<double(WatchedFilter& filter, const RecordedTrial& trial)>;
 
 /// Each column on every trial: the root mean square of its figures, and what its detectors said in
-/// every one of the trials.
+/// every one of the trials that are as bad as that or worse.
 std::vector<AtlasCell> scored(const std::vector<AtlasColumn>& columns, const EkfConfig& believed,
                               const std::vector<RecordedTrial>& trials,
                               const std::string& condition, const Score& score);
@@ -43,6 +43,10 @@ struct ErrorSums {
   double horizontal_rms_m() const;  ///< likewise
   double sigma_ratio() const;       ///< sqrt(NEES / 15): errors over claims; infinite without
 };
+
+/// A figure: heading error over its claimed sigma just before the last fix. Infinite without an
+/// estimate or a claim.
+double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& trial);
 
 /// Turn about the local vertical by which the estimate's heading is off, rad, in 0 to pi.
 double heading_error_rad(const Estimate& truth, const Estimate& estimate);

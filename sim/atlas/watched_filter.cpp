@@ -1,70 +1,14 @@
 #include "watched_filter.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "../visit_filter.hpp"
-#include "leeway/filters/nis_monitor.hpp"
+#include "watched_kernel_ekf.hpp"
 
 namespace leeway::sim {
 namespace {
-
-/// What can be seen of any filter by its estimate and covariance.
-class CommonDetectors {
- public:
-  explicit CommonDetectors(const ImuErrorModel& imu) : imu_(imu) {}
-
-  void note(const GnssFix& fix, const Estimate& estimate, const ErrorMatrix& P) {
-    if (!is_positive_definite(P)) reports_.insert("P not positive");
-    const bool at_rest =
-        fix.velocity && fix.velocity->v_e_mps.norm() < AlignmentConfig{}.rest_speed_mps;
-    if (at_rest && rest_hides_heading(imu_, estimate, P)) reports_.insert("rest hides heading");
-  }
-
-  void note_unusable() { reports_.insert("fix unusable"); }
-  void note_gated() { reports_.insert("gated"); }
-  void note_noise_lost() { reports_.insert("noise lost"); }
-  void note_nis(double nis, int dof) { nis_.note(nis, dof); }
-
-  Reports reports() const {
-    Reports all = reports_;
-    if (nis_.is_high()) all.insert("NIS high");
-    if (nis_.is_low()) all.insert("NIS low");
-    return all;
-  }
-
- private:
-  ImuErrorModel imu_;
-  NisMonitor nis_{};
-  Reports reports_{};
-};
-
-/// KernelEkf of any kind.
-template <class Filter>
-class WatchedKernelEkf final : public WatchedFilter {
- public:
-  WatchedKernelEkf(Filter filter, const ImuErrorModel& imu)
-      : filter_(std::move(filter)), detectors_(imu) {}
-
-  void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
-
-  void update(const GnssFix& fix) override {
-    const FusedFix fused = filter_.update(fix);
-    if (fused.dof == 0) return detectors_.note_unusable();
-    detectors_.note_nis(fused.nis, fused.dof);
-    detectors_.note(fix, filter_.estimate(), filter_.covariance());
-    if (filter_.noise_rounding() > kNoiseLost) detectors_.note_noise_lost();
-  }
-
-  Estimate estimate() const override { return filter_.estimate(); }
-  std::optional<ErrorMatrix> covariance() const override { return filter_.covariance(); }
-  Reports reported() const override { return detectors_.reports(); }
-
- private:
-  static constexpr double kNoiseLost = 0.5;
-
-  Filter filter_;
-  CommonDetectors detectors_;
-};
 
 class WatchedResetFilter final : public WatchedFilter {
  public:
@@ -127,6 +71,10 @@ class WatchedNavigator final : public WatchedFilter {
     return navigator_.filter().covariance();
   }
 
+  std::optional<double> heading_sigma_rad() const override {
+    return navigator_.solution().sigma_attitude_rad.z();
+  }
+
   Reports reported() const override {
     Reports all = reports_;
     const Health health = navigator_.health();
@@ -138,8 +86,9 @@ class WatchedNavigator final : public WatchedFilter {
 
  private:
   void note_state() {
-    const Health::State state = navigator_.health().state;
-    if (state != Health::State::kAligned) reports_.insert(std::string(name(state)));
+    const Health health = navigator_.health();
+    if (health.state != Health::State::kAligned) reports_.insert(std::string(name(health.state)));
+    if (health.correlated_fixes) reports_.insert("fixes correlated");
   }
 
   Navigator navigator_;
@@ -184,6 +133,12 @@ std::vector<Variant> kernel_variants() {
 }
 
 }  // namespace
+
+std::optional<double> WatchedFilter::heading_sigma_rad() const {
+  const auto P = covariance();
+  if (!P) return std::nullopt;
+  return std::sqrt(std::max(0.0, heading_variance_rad2(estimate(), *P)));
+}
 
 std::string joined(const Reports& reports) {
   std::string text;

@@ -37,6 +37,8 @@ class WatchedFilter {
   virtual bool has_estimate() const { return true; }
   /// Nothing of a filter that claims nothing. @pre has_estimate()
   virtual std::optional<ErrorMatrix> covariance() const = 0;
+  /// As an application is told it: of a Navigator, over all headings that are possible. Likewise.
+  virtual std::optional<double> heading_sigma_rad() const;
 
   /// What the detectors have said since the start.
   virtual Reports reported() const = 0;

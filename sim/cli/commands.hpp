@@ -32,6 +32,7 @@ auto writing(F&& write) {
 }
 
 /// Each adds its command to the program; when run, it sets the exit code or throws.
+void add_atlas_command(CLI::App& program, int& exit_code);
 void add_campaign_command(CLI::App& program, int& exit_code);
 void add_compare_command(CLI::App& program, int& exit_code);
 void add_drift_command(CLI::App& program, int& exit_code);

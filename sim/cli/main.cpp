@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   add_analyze_command(program, exit_code);
   add_campaign_command(program, exit_code);
   add_compare_command(program, exit_code);
+  add_atlas_command(program, exit_code);
   add_drift_command(program, exit_code);
   add_simulate_command(program, exit_code);
   add_fuse_command(program, exit_code);

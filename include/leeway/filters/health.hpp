@@ -26,6 +26,9 @@ struct Health {
   double optimistic_by{1.0};         ///< square root of the larger of them, at least 1
   double position_sigma_scale{1.0};  ///< what the receiver's deviations are multiplied by
   double velocity_sigma_scale{1.0};
+  /// Position errors repeat themselves from fix to fix while they are fused as white: sigmas are too
+  /// small. To be mended by EkfConfig::gnss_correlation_s.
+  bool correlated_fixes{false};
   bool mount_known{true};
   bool at_rest{false};            ///< by the detector of the vehicle aiding
   std::uint32_t repairs{0};       ///< of a covariance that was no longer positive definite

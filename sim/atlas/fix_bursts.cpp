@@ -1,0 +1,83 @@
+#include <cmath>
+#include <string>
+
+#include "estimator_scenes.hpp"
+#include "leeway/sim/trajectories.hpp"
+#include "trials.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kBurstS = 10.0;
+constexpr double kSettledS = 120.0;  // of continuous fixes at first
+constexpr int kGaps = 4;
+
+/// Ten seconds of fixes, then minutes of none, four times.
+Scene bursts(double gap_s) {
+  Scene scene;
+  scene.name = "bursts of fixes";
+  scene.duration_s = kSettledS + kGaps * (gap_s + kBurstS);
+  for (int k = 0; k < kGaps; ++k) {
+    scene.gnss.outages.push_back({kSettledS + k * (gap_s + kBurstS), gap_s});
+  }
+  scene.trajectory = circle({.duration_s = scene.duration_s});
+  scene.imu_rate_hz = 20.0;
+  set_imu(scene, "automotive-mems", automotive_mems_model());
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial =
+      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
+  return scene;
+}
+
+/// Horizontal error over its claim before the first fix after each gap.
+double error_over_claim_after_gaps(WatchedFilter& filter, const RecordedTrial& trial,
+                                   double gap_s) {
+  double error_m2 = 0.0;
+  double claimed_m2 = 0.0;
+  double last_fix_s = 0.0;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    const double t_s = to_seconds(truth.nav.time);
+    const bool is_first = t_s - last_fix_s > 0.5 * gap_s;
+    last_fix_s = t_s;
+    if (!is_first || !now.has_estimate()) return;
+    const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
+    error_m2 += position_error_n_m(truth, now.estimate()).head<2>().squaredNorm();
+    if (const auto P = now.covariance()) {
+      const Eigen::Matrix3d P_n_m2 = C_ne * P->block<3, 3>(kDr, kDr) * C_ne.transpose();
+      claimed_m2 += P_n_m2.topLeftCorner<2, 2>().trace();
+    }
+  });
+  return std::sqrt(error_m2 / claimed_m2);
+}
+
+std::vector<AtlasCell> run_fix_bursts(const AtlasOptions& options) {
+  std::vector<AtlasCell> cells;
+  for (const double gap_s : {60.0, 180.0}) {
+    const Scene scene = bursts(gap_s);
+    const auto trials = recorded_trials(scene, options.brief ? 3 : 10);
+    const std::string condition = "gaps of " + std::to_string(std::lround(gap_s)) + " s";
+    const auto score = [gap_s](WatchedFilter& filter, const RecordedTrial& trial) {
+      return error_over_claim_after_gaps(filter, trial, gap_s);
+    };
+    for (AtlasCell& cell : scored(few_atlas_columns(), scene.filter, trials, condition, score)) {
+      cells.push_back(std::move(cell));
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene fix_bursts() {
+  return {
+      "fix-bursts",
+      "Bursts of fixes with minutes between",
+      "horizontal error over its claimed sigma at the end of gaps",
+      "",
+      {1.5, 3.0,
+       "of 1, by how much a few dozen gaps scatter; at 3 a limit that is derived from the claim "
+       "is not kept"},
+      run_fix_bursts};
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,60 @@
+#include "estimator_scenes.hpp"
+#include "leeway/sim/trajectories.hpp"
+#include "trials.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kShockS = 60.0;       // for one second from here ..
+constexpr double kShockMps2 = 50.0;    // .. the accelerometers read so much too much
+constexpr double kRecoveredS = 120.0;  // when the filter should be right again
+
+Scene drive_with_shock() {
+  Scene scene;
+  scene.name = "a shock that the accelerometers take for motion";
+  scene.duration_s = 150.0;
+  scene.trajectory = circle({.duration_s = scene.duration_s});
+  scene.imu_rate_hz = 50.0;
+  set_imu(scene, "automotive-mems", automotive_mems_model());
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial =
+      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
+  return scene;
+}
+
+void add_shock(RecordedTrial& trial) {
+  for (ImuIncrement& inc : trial.imu) {
+    const double t_s = to_seconds(inc.time);
+    if (t_s > kShockS && t_s < kShockS + 1.0) inc.dv_b_mps.x() += kShockMps2 * inc.dt_s;
+  }
+}
+
+double error_afterwards_m(WatchedFilter& filter, const RecordedTrial& trial) {
+  ErrorSums sums;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    if (to_seconds(truth.nav.time) > kRecoveredS) sums.add(truth, now);
+  });
+  return sums.horizontal_rms_m();
+}
+
+std::vector<AtlasCell> run_gate_lockout(const AtlasOptions& options) {
+  const Scene scene = drive_with_shock();
+  auto trials = recorded_trials(scene, options.brief ? 2 : 8);
+  for (RecordedTrial& trial : trials) add_shock(trial);
+  return scored(few_atlas_columns(), scene.filter, trials, {}, error_afterwards_m);
+}
+
+}  // namespace
+
+AtlasScene gate_lockout() {
+  return {"gate-lockout",
+          "A gate that refuses right fixes",
+          "RMS horizontal error before fixes, from a minute after the shock",
+          "m",
+          {8.0, 80.0,
+           "fixes of 2.5 m every second keep an unhurt filter within 3 sigma; ten times as much is "
+           "of no use on a road"},
+          run_gate_lockout};
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,42 @@
+#include "estimator_scenes.hpp"
+#include "leeway/sim/trajectories.hpp"
+#include "trials.hpp"
+
+namespace leeway::sim {
+namespace {
+
+Scene parked(double duration_s) {
+  Scene scene;
+  scene.name = "parked with RTK fixes";
+  scene.duration_s = duration_s;
+  scene.trajectory = static_trajectory({.duration_s = duration_s});
+  scene.imu_rate_hz = 5.0;
+  set_imu(scene, "automotive-mems", automotive_mems_model());
+  scene.gnss.errors.position_sigma_n_m.setConstant(0.01);
+  scene.gnss.errors.velocity_sigma_n_mps.setConstant(0.01);
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial = InitialSigma{
+      .tilt_rad = 0.03, .heading_rad = 10.0 * kRadPerDeg, .velocity_mps = 0.05, .position_m = 0.1};
+  return scene;
+}
+
+std::vector<AtlasCell> run_parked_rtk(const AtlasOptions& options) {
+  const Scene scene = parked(options.brief ? 300.0 : 900.0);
+  return scored(few_atlas_columns(), scene.filter, recorded_trials(scene, options.brief ? 6 : 24),
+                {}, final_heading_over_claim);
+}
+
+}  // namespace
+
+AtlasScene parked_rtk() {
+  return {"parked-rtk",
+          "Parked with RTK fixes: the heading's variance collapses",
+          "heading error over its claimed sigma at the end",
+          "",
+          {1.5, 3.0,
+           "of 1, by how much two dozen trials scatter; a claim of a third of the error keeps a "
+           "later filter from learning the heading"},
+          run_parked_rtk};
+}
+
+}  // namespace leeway::sim
