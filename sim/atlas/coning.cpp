@@ -13,7 +13,9 @@ constexpr double kConingRad = 0.1 * kRadPerDeg;
 
 /// The body's axes draw cones of this half angle.
 Trajectory coning_motion(double frequency_hz) {
-  Trajectory trajectory = static_trajectory();
+  Trajectory trajectory;
+  trajectory.name = "coning";
+  trajectory.plane = TangentPlane(kDefaultOrigin);
   trajectory.motion = [frequency_hz](double t_s) {
     const Jet phase = 2.0 * std::numbers::pi * frequency_hz * time_jet(t_s);
     LocalMotion m;

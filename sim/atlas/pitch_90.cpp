@@ -2,12 +2,15 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "free_run.hpp"
+#include "leeway/imu_class.hpp"
 #include "leeway/sim/imu_simulator.hpp"
 #include "leeway/sim/trajectories.hpp"
 #include "leeway/sim/variant.hpp"
 #include "mechanization_scenes.hpp"
+#include "trials.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -20,8 +23,9 @@ constexpr double kLoopRateHz = 50.0;
 /// Inside loops towards north in a plane that leans from the vertical: the largest pitch is 90 deg
 /// less that angle.
 Trajectory aerobatic_loops(double lean_rad, double duration_s) {
-  Trajectory trajectory = static_trajectory();
+  Trajectory trajectory;
   trajectory.name = "aerobatic loops";
+  trajectory.plane = TangentPlane(kDefaultOrigin);
   trajectory.duration_s = duration_s;
   trajectory.motion = [c = std::cos(lean_rad), s = std::sin(lean_rad)](double t_s) {
     const Jet turned = kLoopMps / kLoopRadiusM * time_jet(t_s);
@@ -118,11 +122,46 @@ void add_free_runs(std::vector<AtlasCell>& cells, double lean_deg, double durati
   cells.push_back({AtlasGroup::kNotOffered, "Euler angles", condition, largest_deg, {}});
 }
 
+/// A tactical IMU, and a fix every second.
+Scene filtered_loops(double duration_s) {
+  Scene scene;
+  scene.name = "aerobatic loops";
+  scene.trajectory = aerobatic_loops(0.0, duration_s);
+  scene.duration_s = std::floor(duration_s);
+  scene.imu_rate_hz = kLoopRateHz;
+  set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial =
+      InitialSigma{.tilt_rad = 3e-3, .heading_rad = 0.01, .velocity_mps = 0.1, .position_m = 3.0};
+  return scene;
+}
+
+/// From the second loop on.
+double attitude_rms_deg(WatchedFilter& filter, const RecordedTrial& trial) {
+  double squares_deg2 = 0.0;
+  double epochs = 0.0;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    if (to_seconds(truth.nav.time) < kLoopS) return;
+    const double error_deg = now.has_estimate()
+                                 ? attitude_error_deg(truth.nav, now.estimate().nav.q_eb)
+                                 : std::numeric_limits<double>::infinity();
+    squares_deg2 += error_deg * error_deg;
+    epochs += 1.0;
+  });
+  return std::sqrt(squares_deg2 / epochs);
+}
+
 std::vector<AtlasCell> run_pitch_90(const AtlasOptions& options) {
   const double duration_s = (options.brief ? 2.0 : 4.0) * kLoopS;
   std::vector<AtlasCell> cells;
   for (const double lean_deg : {0.0, 0.1, 1.0, 10.0}) {
     add_free_runs(cells, lean_deg, duration_s);
+  }
+  const Scene scene = filtered_loops(duration_s);
+  for (const AtlasCell& cell :
+       scored(few_atlas_columns(), scene.filter, recorded_trials(scene, options.brief ? 1 : 4),
+              "with fixes; up to 90 deg", attitude_rms_deg)) {
+    cells.push_back(cell);
   }
   return cells;
 }

@@ -14,7 +14,9 @@ constexpr double kScullingMps2 = 20.0;
 /// Rolls and swings sideways in phase: the force has a mean upwards in the body's axes, none in
 /// level ones.
 Trajectory sculling_motion(double frequency_hz) {
-  Trajectory trajectory = static_trajectory();
+  Trajectory trajectory;
+  trajectory.name = "sculling";
+  trajectory.plane = TangentPlane(kDefaultOrigin);
   trajectory.motion = [frequency_hz](double t_s) {
     const double omega_radps = 2.0 * std::numbers::pi * frequency_hz;
     const Jet swing = sin(omega_radps * time_jet(t_s));

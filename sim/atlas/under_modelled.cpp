@@ -12,7 +12,7 @@ constexpr std::chrono::seconds kFixEvery{10};  // from then on; each second befo
 constexpr Time kVibratesFrom{std::chrono::seconds{150}};
 
 /// RMS horizontal error before fixes, over what the filter claims for it.
-double error_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
+double horizontal_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
   double squares = 0.0;
   double epochs = 0.0;
   replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
@@ -83,7 +83,7 @@ std::vector<AtlasCell> run_under_modelled(const AtlasOptions& options) {
       for (ImuIncrement& inc : trial.imu) fault.spoil(inc);
     });
     for (const AtlasCell& cell :
-         scored(claiming_columns(), believed, faulty, condition, error_over_claim)) {
+         scored(claiming_columns(), believed, faulty, condition, horizontal_over_claim)) {
       cells.push_back(cell);
     }
   };
