@@ -56,8 +56,9 @@ int run(const BudgetCommand& options) {
 
 void add_budget_command(CLI::App& program, int& exit_code) {
   CLI::App* app = program.add_subcommand(
-      "budget", "What each term of the filter's model is worth in a scene, what it costs, and the "
-                "cheapest filter that keeps the limit");
+      "budget",
+      "What each term of the filter's model is worth in a scene, what it costs, and the "
+      "cheapest filter that keeps the limit");
   const auto options = std::make_shared<BudgetCommand>();
   add_scene_options(*app, options->scene);
   app->add_option("--trials", options->trials, "of every model; in place of the scene's")
@@ -68,8 +69,7 @@ void add_budget_command(CLI::App& program, int& exit_code) {
   app->add_option("--repeat", options->budget.repeat, "timed runs of every model")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app->add_option("--threads", options->budget.threads,
-                  "of what is not timed; 0: all processors")
+  app->add_option("--threads", options->budget.threads, "of what is not timed; 0: all processors")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app->add_option("--write", options->write,
