@@ -7,7 +7,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kWorthwhile = 0.03;  // of what the model costs: to less, costs do not repeat
+constexpr double kWorthwhile = 0.05;  // of what the model costs: to less, costs do not repeat
 
 class Choice {
  public:

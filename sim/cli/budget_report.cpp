@@ -99,14 +99,14 @@ Json model_json(const sim::ModelBudget& model) {
 
 }  // namespace
 
-void print_budget(const sim::Budget& budget, int repeat) {
+void print_model_budget(const sim::Budget& budget, int repeat) {
   print_budget_conditions(budget, repeat);
   print_terms(budget);
   print_models(budget);
   print_verdict(budget);
 }
 
-Json budget_json(const sim::Budget& budget) {
+Json model_budget_json(const sim::Budget& budget) {
   const double limit_m = budget.scene.budget.limit_m;
   Json terms = Json::array();
   for (const sim::TermBudget& term : budget.terms) {
@@ -130,7 +130,7 @@ Json budget_json(const sim::Budget& budget) {
           {"speedup", budget.full.cost.median_ns_per_s / budget.reduced.cost.median_ns_per_s}};
 }
 
-std::string budget_comment(const sim::Budget& budget) {
+std::string model_budget_comment(const sim::Budget& budget) {
   const sim::ModelBudget& reduced = budget.reduced;
   return fmt::format(
       "The cheapest filter found for the scene '{}' within {:g} m ({}): {:.3f} m in {} trials,\n"
