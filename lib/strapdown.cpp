@@ -80,7 +80,7 @@ StrapdownStep euler_step(NavState& state, const ImuIncrement& inc) {
   const Eigen::Matrix3d C_eb = state.q_eb.toRotationMatrix();
   const Eigen::Vector3d dtheta_eb_b =
       inc.dtheta_b_rad - inc.dt_s * (C_eb.transpose() * turn_e);  // [seed (3)]
-  const Eigen::Vector3d dv_f_e = C_eb * inc.dv_b_mps;                 // [seed (4)]
+  const Eigen::Vector3d dv_f_e = C_eb * inc.dv_b_mps;             // [seed (4)]
   const Eigen::Vector3d v_old_e = state.v_e_mps;
   state.v_e_mps += dv_f_e + inc.dt_s * (gravity_e<gravity>(state.r_e_m) -
                                         coriolis_e.cross(v_old_e));  // [seed (5)-(7)]

@@ -23,8 +23,8 @@ inline void assign(Eigen::Vector3d& to, const Triple& v) {
   to.z() = v.z;
 }
 
-/// By columns, two numbers at a time as they will be read: a load of two that were stored one by one
-/// waits for both.
+/// By columns, two numbers at a time as they will be read: a load of two that were stored one by
+/// one waits for both.
 [[gnu::always_inline]] inline void assign(Eigen::Matrix3d& to, const Triple& x, const Triple& y,
                                           const Triple& z) {
   using Pair = Eigen::Array2d;

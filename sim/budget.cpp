@@ -14,8 +14,8 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kAgreesWithin = 0.2;         // of what was measured
-constexpr double kAgreesWithinLimit = 0.01;   // or of the limit
+constexpr double kAgreesWithin = 0.2;        // of what was measured
+constexpr double kAgreesWithinLimit = 0.01;  // or of the limit
 
 void validate(const Scene& scene, const BudgetOptions& options) {
   if (options.repeat < 1 || options.repeat > 1000) {
@@ -90,7 +90,7 @@ class Budgeting {
     for (const TermBudget& term : result_.terms) {
       if (sources_of(term.term).empty()) models.push_back(without(full_, {term.term}));
     }
-    const ModelCosts costs = costs_of(plan_, models, options_.repeat, part(0.1, 0.2));
+    const ModelCosts costs = model_costs(plan_, models, options_.repeat, part(0.1, 0.2));
     auto saving = costs.savings.begin();
     for (TermBudget& term : result_.terms) {
       if (sources_of(term.term).empty()) term.cost = *++saving;
@@ -130,8 +130,8 @@ class Budgeting {
         cases.push_back({&plan_, without(full_, {term.term})});
         continue;
       }
-      other_sensors.push_back(std::make_unique<TrialPlan>(
-          without_sources(plan_.scene(), sources), std::nullopt, options_.threads));
+      other_sensors.push_back(std::make_unique<TrialPlan>(without_sources(plan_.scene(), sources),
+                                                          std::nullopt, options_.threads));
       cases.push_back({other_sensors.back().get(), full_});
     }
     const auto accuracies = measured(cases, options_.threads, part(0.3, 0.9));
@@ -146,7 +146,7 @@ class Budgeting {
   void price_models() {
     std::vector<FilterModel> filters;
     for (const ModelBudget* model : models()) filters.push_back(model->model);
-    const ModelCosts costs = costs_of(plan_, filters, options_.repeat, part(0.9, 1.0));
+    const ModelCosts costs = model_costs(plan_, filters, options_.repeat, part(0.9, 1.0));
     auto cost = costs.costs.begin();
     for (ModelBudget* model : models()) model->cost = *cost++;
   }
@@ -154,11 +154,10 @@ class Budgeting {
   void judge() {
     const MeasuredAccuracy& full = result_.full.measured;
     const MeasuredAccuracy& reduced = result_.reduced.measured;
-    result_.keeps_limit = reduced.figures.not_finite == 0 &&
-                          reduced.error_m <= result_.scene.budget.limit_m;
-    result_.is_as_honest =
-        is_as_honest(reduced.figures.rms_over_sigma, reduced.figures.mean_nees,
-                     full.figures.rms_over_sigma, full.figures.mean_nees);
+    result_.keeps_limit =
+        reduced.figures.not_finite == 0 && reduced.error_m <= result_.scene.budget.limit_m;
+    result_.is_as_honest = is_as_honest(reduced.figures.rms_over_sigma, reduced.figures.mean_nees,
+                                        full.figures.rms_over_sigma, full.figures.mean_nees);
   }
 
   const BudgetOptions& options_;

@@ -7,7 +7,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kWorthwhile = 0.03;  // of what the model costs: to less, costs do not repeat
+constexpr double kWorthwhile = 0.05;  // of what the model costs: to less, costs do not repeat
 
 class Choice {
  public:
@@ -21,10 +21,10 @@ class Choice {
 
   /// Takes the terms that save most first, each that the limit and honesty leave room for.
   void drop_by_saving(std::vector<TermBudget> terms) {
-    std::sort(terms.begin(), terms.end(), [](const TermBudget& a, const TermBudget& b) {
-      return saving_of(a) > saving_of(b);
-    });
-    const double least = kWorthwhile * costs_of(plan_, {full_}, 1, {}).costs.front().median_ns_per_s;
+    std::sort(terms.begin(), terms.end(),
+              [](const TermBudget& a, const TermBudget& b) { return saving_of(a) > saving_of(b); });
+    const double least =
+        kWorthwhile * model_costs(plan_, {full_}, 1, {}).costs.front().median_ns_per_s;
     for (const TermBudget& term : terms) {
       if (!may_be_dropped(term.term) || saving_of(term) < least) continue;
       dropped_.push_back(term.term);
@@ -38,7 +38,7 @@ class Choice {
       std::vector<ModelTerm> fewer = dropped_;
       fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
       const ModelCosts costs =
-          costs_of(plan_, {without(full_, fewer), without(full_, dropped_)}, rounds_, {});
+          model_costs(plan_, {without(full_, fewer), without(full_, dropped_)}, rounds_, {});
       const double worthwhile = kWorthwhile * costs.costs.front().median_ns_per_s;
       if (costs.savings.back().median_ns_per_s < worthwhile) dropped_ = fewer;
     }
@@ -75,8 +75,8 @@ bool is_as_honest(double rms_over_sigma, double nees, double full_rms_over_sigma
 }
 
 std::vector<ModelTerm> cheapest_terms(const TrialPlan& plan, const BudgetPrediction& prediction,
-                                      const FilterModel& full,
-                                      const std::vector<TermBudget>& terms, int rounds) {
+                                      const FilterModel& full, const std::vector<TermBudget>& terms,
+                                      int rounds) {
   Choice choice(plan, prediction, full, rounds);
   choice.drop_by_saving(terms);
   choice.restore_the_idle();

@@ -49,8 +49,8 @@ struct BudgetCase {
   FilterModel model{};
 };
 
-/// All cases on the same noise, trial by trial; the first is what the others are compared with.
-/// @param metric  of the first plan's scene
+/// All cases on the same noise, trial by trial; the first is what the others are compared with, and
+/// its plan has trials, seeds and metric.
 std::vector<MeasuredAccuracy> measured(const std::vector<BudgetCase>& cases, int threads,
                                        const std::function<void(double)>& progress);
 
@@ -60,8 +60,8 @@ struct ModelCosts {
   std::vector<Cost> costs{};
   std::vector<Cost> savings{};
 };
-ModelCosts costs_of(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
-                    const std::function<void(double)>& progress);
+ModelCosts model_costs(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
+                       const std::function<void(double)>& progress);
 
 /// The scene with these errors of its sensors taken away, and every other random number the same.
 Scene without_sources(Scene scene, const std::vector<ErrorSource>& sources);
@@ -69,11 +69,10 @@ Scene without_sources(Scene scene, const std::vector<ErrorSource>& sources);
 /// The terms of the cheapest model found that keeps scene.budget and the honesty of the full one,
 /// by prediction.
 std::vector<ModelTerm> cheapest_terms(const TrialPlan& plan, const BudgetPrediction& prediction,
-                                      const FilterModel& full,
-                                      const std::vector<TermBudget>& terms, int rounds);
+                                      const FilterModel& full, const std::vector<TermBudget>& terms,
+                                      int rounds);
 
 /// Whether the reduced model keeps its promise as well as the full one: kHonesty.
-bool is_as_honest(double rms_over_sigma, double nees, double full_rms_over_sigma,
-                  double full_nees);
+bool is_as_honest(double rms_over_sigma, double nees, double full_rms_over_sigma, double full_nees);
 
 }  // namespace leeway::sim

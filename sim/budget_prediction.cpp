@@ -101,8 +101,7 @@ struct BudgetPrediction::Track {
       if (fixes[i].scored) {
         PairedCovariance without_fix = pair;
         advance(without_fix, fix_s, time_s(fixes[i].arrives));
-        const Geodetic place =
-            geodetic_from_ecef(path.states[fixes[i].arrives + 1].r_e_m);
+        const Geodetic place = geodetic_from_ecef(path.states[fixes[i].arrives + 1].r_e_m);
         show(without_fix, *epoch++, ned_to_ecef(place));
       }
       pair.update(fix_rows(path, fixes[i].at, scene.gnss.errors.lever_arm_b_m, weights[i]),
@@ -139,15 +138,14 @@ double BudgetPrediction::contribution_m(const std::vector<ErrorSource>& sources)
   }
   double sum_m2 = 0.0;
   int epochs = 0;
-  track_->run(track_->full, track_->full_pass,
-              [&](const PairedCovariance& pair, const ModelPass::Epoch&,
-                  const Eigen::Matrix3d& C_en) {
-                const ErrorMatrix P = pair.of_parameters(0, wanted);
-                ++epochs;
-                sum_m2 += (C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) *
-                           C_en.leftCols<2>())
-                              .trace();
-              });
+  track_->run(
+      track_->full, track_->full_pass,
+      [&](const PairedCovariance& pair, const ModelPass::Epoch&, const Eigen::Matrix3d& C_en) {
+        const ErrorMatrix P = pair.of_parameters(0, wanted);
+        ++epochs;
+        sum_m2 +=
+            (C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>()).trace();
+      });
   return std::sqrt(sum_m2 / epochs);
 }
 

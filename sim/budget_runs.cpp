@@ -54,7 +54,7 @@ class GivenTrials {
 };
 
 /// Biases that are no states are certain.
-TrialStart start_of(const RecordedTrial& trial, const BiasStates& biases) {
+TrialStart given_start(const RecordedTrial& trial, const BiasStates& biases) {
   TrialStart start = trial.start;
   for (const auto& [state, row] :
        {std::pair{biases.accelerometer, kBa}, std::pair{biases.gyro, kBg}}) {
@@ -75,7 +75,7 @@ CaseRun run_case(const FilterModel& model, const RecordedTrial& trial, std::uint
     if (run.score.finite) score_epoch(run.score, truth, estimate, P);
     run.error_ne_m.emplace_back(position_error_n_m(truth, estimate).head<2>());
   };
-  make_contender(variant_of(model), model.config, start_of(trial, model.config.biases))
+  make_contender(variant_of(model), model.config, given_start(trial, model.config.biases))
       ->replay(trial, score);
   if (!run.score.finite) run.score.diverged = true;
   return run;
@@ -109,14 +109,14 @@ double difference_m(const std::vector<CaseRun>& runs, const std::vector<CaseRun>
   return std::sqrt(sum_m2 / static_cast<double>(epochs));
 }
 
-MeasuredAccuracy summary(HorizontalMetric metric, const std::vector<CaseRun>& runs,
-                         const std::vector<CaseRun>& full) {
+MeasuredAccuracy case_summary(HorizontalMetric metric, const std::vector<CaseRun>& runs,
+                              const std::vector<CaseRun>& full) {
   CampaignSums sums;
   for (const CaseRun& run : runs) sums.add(run.score);
   return {empirical_error_m(metric, runs), difference_m(runs, full), result_of(sums)};
 }
 
-void remove(TriadErrorModel& triad, bool scales, bool misalignments) {
+void take_away(TriadErrorModel& triad, bool scales, bool misalignments) {
   // Not zero: a spread that is drawn leaves the random numbers after it as they were.
   constexpr double kNothing = 1e-300;
   if (scales) {
@@ -135,9 +135,9 @@ Scene without_sources(Scene scene, const std::vector<ErrorSource>& sources) {
   const auto has = [&sources](ErrorSource source) {
     return std::find(sources.begin(), sources.end(), source) != sources.end();
   };
-  remove(scene.imu.accelerometer, has(ErrorSource::kAccelerometerScale),
-         has(ErrorSource::kAccelerometerMisalignment));
-  remove(scene.imu.gyro, has(ErrorSource::kGyroScale), has(ErrorSource::kGyroMisalignment));
+  take_away(scene.imu.accelerometer, has(ErrorSource::kAccelerometerScale),
+            has(ErrorSource::kAccelerometerMisalignment));
+  take_away(scene.imu.gyro, has(ErrorSource::kGyroScale), has(ErrorSource::kGyroMisalignment));
   if (has(ErrorSource::kGyroGSensitivity)) {
     scene.imu.G_g_radps_per_mps2.setZero();
     if (scene.imu.G_g_sigma_radps_per_mps2 > 0.0) scene.imu.G_g_sigma_radps_per_mps2 = 1e-300;
@@ -166,17 +166,17 @@ std::vector<MeasuredAccuracy> measured(const std::vector<BudgetCase>& cases, int
       threads);
   std::vector<MeasuredAccuracy> result;
   for (const auto& of_case : runs) {
-    result.push_back(summary(scene.budget.metric, of_case, runs.front()));
+    result.push_back(case_summary(scene.budget.metric, of_case, runs.front()));
   }
   return result;
 }
 
-ModelCosts costs_of(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
-                    const std::function<void(double)>& progress) {
+ModelCosts model_costs(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
+                       const std::function<void(double)>& progress) {
   GivenTrials given(plan.scene().first_seed);
   const auto timed = [&](const FilterModel& model, std::size_t place) {
     const RecordedTrial& trial = given.to(plan, model);
-    const TrialStart start = start_of(trial, model.config.biases);
+    const TrialStart start = given_start(trial, model.config.biases);
     return timed_ns_per_s(variant_of(model), model.config, start, trial, place);
   };
   std::vector<std::vector<double>> savings(models.size());

@@ -38,8 +38,8 @@ double timed_ns_per_s(const Variant& variant, const EkfConfig& believed, const T
 Cost cost_of(std::vector<double> ns_per_s) {
   std::sort(ns_per_s.begin(), ns_per_s.end());
   const std::size_t half = ns_per_s.size() / 2;
-  const double median = ns_per_s.size() % 2 == 1 ? ns_per_s[half]
-                                                 : 0.5 * (ns_per_s[half - 1] + ns_per_s[half]);
+  const double median =
+      ns_per_s.size() % 2 == 1 ? ns_per_s[half] : 0.5 * (ns_per_s[half - 1] + ns_per_s[half]);
   return {median, ns_per_s.front(), ns_per_s.back()};
 }
 

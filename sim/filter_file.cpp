@@ -95,10 +95,9 @@ std::string filter_file(const Scene& scene, std::string_view comment) {
              "gravity_gradient = {}\ncovariance_interval_s = {}\naccelerometer_bias = \"{}\"\n"
              "gyro_bias = \"{}\"\nimu_divider = {}\n",
              word_for(kSchemeNames, filter.strapdown.scheme),
-             word_for(kGravityNames, filter.strapdown.gravity),
-             has_turn(filter.strapdown.rotation), has_coriolis(filter.strapdown.rotation),
-             filter.gravity_gradient, filter.covariance_interval_s,
-             word_for(kBiasStateNames, filter.biases.accelerometer),
+             word_for(kGravityNames, filter.strapdown.gravity), has_turn(filter.strapdown.rotation),
+             has_coriolis(filter.strapdown.rotation), filter.gravity_gradient,
+             filter.covariance_interval_s, word_for(kBiasStateNames, filter.biases.accelerometer),
              word_for(kBiasStateNames, filter.biases.gyro), scene.imu_divider);
 }
 

@@ -12,7 +12,7 @@
 namespace leeway::sim {
 namespace {
 
-Estimate at(const NavState& nav) {
+Estimate estimate_at(const NavState& nav) {
   Estimate estimate;
   estimate.nav = nav;
   return estimate;
@@ -26,7 +26,7 @@ Eigen::Vector3d rate_in(const TruePath& path, std::size_t increment) {
 /// Position and velocity of an antenna at the end of an increment.
 Eigen::Matrix<double, 6, 1> antenna_e(const TruePath& path, std::size_t increment,
                                       const Eigen::Vector3d& lever_arm_b_m) {
-  const Estimate estimate = at(path.states[increment + 1]);
+  const Estimate estimate = estimate_at(path.states[increment + 1]);
   Eigen::Matrix<double, 6, 1> antenna;
   antenna << antenna_position_e(estimate, lever_arm_b_m),
       antenna_velocity_e(estimate, lever_arm_b_m, rate_in(path, increment));
@@ -44,9 +44,9 @@ class Pass {
         noise_(process_noise(model.config.imu, model.config.biases)),
         strapdown_(strapdown_function(model.config.strapdown)),
         state_{ErrorVector::Zero(),
-               {SymmetricKernel<Scalar>(initial_covariance(
-                    at(path.states.front()), path.plan.initial(), model.config.imu,
-                    model.config.biases)),
+               {SymmetricKernel<Scalar>(initial_covariance(estimate_at(path.states.front()),
+                                                           path.plan.initial(), model.config.imu,
+                                                           model.config.biases)),
                 model.config.covariance_interval_s}} {}
 
   ModelPass run() {
@@ -79,7 +79,8 @@ class Pass {
     for (std::size_t k = first + 1; k < first + count; ++k) append(inc, path_.plan.increments()[k]);
     NavState nav = path_.states[first];
     const StrapdownStep step = strapdown_(nav, inc, history_);
-    const ErrorVector missed = difference(at(path_.states[first + count]), at(nav));
+    const ErrorVector missed =
+        difference(estimate_at(path_.states[first + count]), estimate_at(nav));
     const Eigen::Matrix3d true_gradient_e = gravity_gradient_e(path_.states[first].r_e_m);
     ErrorDynamics dynamics{.dt_s = inc.dt_s,
                            .C_eb_mean = step.C_eb_mean,
@@ -109,8 +110,8 @@ class Pass {
   Eigen::Vector3d gravity_beyond_linear(const Eigen::Vector3d& dr_e_m,
                                         const Stretch& stretch) const {
     const GravityModel gravity = model_.config.strapdown.gravity;
-    const Eigen::Vector3d difference = gravity_e(gravity, stretch.r_e_m) -
-                                       gravity_e(gravity, stretch.r_e_m - dr_e_m);
+    const Eigen::Vector3d difference =
+        gravity_e(gravity, stretch.r_e_m) - gravity_e(gravity, stretch.r_e_m - dr_e_m);
     return stretch.dt_s * (difference - stretch.gravity_gradient_e * dr_e_m);
   }
 
@@ -140,8 +141,7 @@ class Pass {
     const Eigen::Matrix3d C_ne =
         ned_to_ecef(geodetic_from_ecef(path_.states[increment + 1].r_e_m)).transpose();
     const Eigen::Matrix<double, 6, 1> missed_e =
-        antenna_e(path_, fix.at, lever) -
-        antenna_e(path_, increment, model_.config.lever_arm_b_m);
+        antenna_e(path_, fix.at, lever) - antenna_e(path_, increment, model_.config.lever_arm_b_m);
     Eigen::Matrix<double, 6, 1> missed;
     missed << C_ne * missed_e.head<3>(), C_ne * missed_e.tail<3>();
     missed = missed.cwiseProduct(rows.per_sigma);
@@ -205,7 +205,7 @@ FixRows fix_rows(const TruePath& path, std::size_t increment, const Eigen::Vecto
   const NavState& nav = path.states[increment + 1];
   const GnssFix fix{nav.time, GnssPosition{}, GnssVelocity{}};
   const Measurement m =
-      gnss_measurement(fix, at(nav), lever_arm_b_m, rate_in(path, increment));
+      gnss_measurement(fix, estimate_at(nav), lever_arm_b_m, rate_in(path, increment));
   const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).transpose();
   FixRows rows;
   rows.per_sigma = fix_variance(path.plan.scene().gnss.errors).cwiseSqrt().cwiseInverse();

@@ -41,9 +41,9 @@ struct ModelPass {
   bool is_positive{true};        ///< P, after every fix
 };
 
-/// The mean error is what single steps of the model's strapdown on true increments miss the path by,
-/// and its measurements the fixes by, carried on by the linear dynamics and the model's gains. The
-/// covariance is the model's own, in its precision and at its interval.
+/// The mean error is what single steps of the model's strapdown on true increments miss the path
+/// by, and its measurements the fixes by, carried on by the linear dynamics and the model's gains.
+/// The covariance is the model's own, in its precision and at its interval.
 ModelPass model_pass(const TruePath& path, const FilterModel& model);
 
 }  // namespace leeway::sim

@@ -36,10 +36,9 @@ RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed) {
 
 bool fits(const TrialPlan& plan, int divider) {
   const auto n = static_cast<std::size_t>(divider);
-  return std::all_of(plan.fixes().begin(), plan.fixes().end(),
-                     [n](const TrialPlan::Fix& fix) {
-                       return (fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0;
-                     });
+  return std::all_of(plan.fixes().begin(), plan.fixes().end(), [n](const TrialPlan::Fix& fix) {
+    return (fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0;
+  });
 }
 
 RecordedTrial at_lower_rate(const RecordedTrial& trial, int divider) {

@@ -32,7 +32,8 @@ struct RecordedTrial {
 /// @pre every fix of the plan arrives before the next one is valid.
 RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed);
 
-/// Whether every fix is valid and arrives at the end of an increment at a rate lower by this divider.
+/// Whether every fix is valid and arrives at the end of an increment at a rate lower by this
+/// divider.
 bool fits(const TrialPlan& plan, int divider);
 
 /// The same sensor read less often: so many increments added to one, errors and all. Nothing is

@@ -80,8 +80,8 @@ InitialSigma initial_sigma(const Scene& scene) {
 }
 
 double scored_part_s(const Scene& scene) {
-  return std::max({scene.budget.last_s, 2.0 * scene.gnss.interval_s,
-                   scene.trajectory.period_s.value_or(0.0)});
+  return std::max(
+      {scene.budget.last_s, 2.0 * scene.gnss.interval_s, scene.trajectory.period_s.value_or(0.0)});
 }
 
 std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s) {

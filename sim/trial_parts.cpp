@@ -27,8 +27,8 @@ Estimate drawn_start(const Estimate& truth, const ErrorMatrix& P, Random random)
   return estimate;
 }
 
-/// P in units of its sigmas, which differ by 1e9. A bias of zero variance is no state of the filter:
-/// it has no sigma, and 1 on the diagonal.
+/// P in units of its sigmas, which differ by 1e9. A bias of zero variance is no state of the
+/// filter: it has no sigma, and 1 on the diagonal.
 struct ScaledCovariance {
   ErrorVector per_sigma;
   Eigen::LLT<ErrorMatrix> llt;

@@ -41,17 +41,17 @@ int run(const BudgetCommand& options) {
   Json input = scene_json(budget.scene);
   input.erase("gate_probability");  // there is no gate
   input["repeat"] = options.budget.repeat;
-  const Json answer = answer_json("budget", std::move(input), budget_json(budget));
+  const Json answer = answer_json("budget", std::move(input), model_budget_json(budget));
   if (options.json) {
     print_json(answer);
   } else {
-    print_budget(budget, options.budget.repeat);
+    print_model_budget(budget, options.budget.repeat);
   }
   write_report(options.report, answer);
   if (!budget.keeps_limit || !budget.is_as_honest) return kNoAnswer;
   if (!options.write.empty()) {
     const sim::Scene reduced = sim::with_model(budget.scene, budget.reduced.model);
-    write_file(options.write, sim::filter_file(reduced, budget_comment(budget)));
+    write_file(options.write, sim::filter_file(reduced, model_budget_comment(budget)));
   }
   return kSuccess;
 }

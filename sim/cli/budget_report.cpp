@@ -20,11 +20,11 @@ std::string remark(const sim::TermBudget& term, double limit_m) {
   return sim::agrees(term, limit_m) ? "" : "apart";
 }
 
-void print_conditions(const sim::Budget& budget, int repeat) {
+void print_budget_conditions(const sim::Budget& budget, int repeat) {
   const sim::Scene& scene = budget.scene;
   fmt::print("Scene '{}': {:g} s, IMU {} at {:g} Hz, fixes every {:g} s; limit {:g} m ({})\n",
-             scene.name, scene.duration_s, scene.imu_name, scene.imu_rate_hz,
-             scene.gnss.interval_s, scene.budget.limit_m, name(scene.budget.metric));
+             scene.name, scene.duration_s, scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s,
+             scene.budget.limit_m, name(scene.budget.metric));
   fmt::print(
       "Errors before each fix in the last {:g} s: {} trials, seeds {} to {}, no outliers, no gate. "
       "Cost: median of {} runs of the filter, ns per second of IMU data.\n",
@@ -36,23 +36,25 @@ void print_terms(const sim::Budget& budget) {
   fmt::print(
       "\nWhat each term of the full model is worth: RMS of the difference that its substitute "
       "makes, horizontally\n");
-  Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark", "diverged",
-               "cost, ns/s", "<in the reduced model"});
+  Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark",
+               "diverged", "cost, ns/s", "<in the reduced model"});
   for (const sim::TermBudget& term : budget.terms) {
     table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
                number(term.predicted_m, 5), number(term.measured_m, 5),
                number(term.predicted_m / term.measured_m, 2),
                remark(term, budget.scene.budget.limit_m), fmt::format("{}", term.diverged),
                number(cost_of(term), 0),
-               !term.cost ? "unmodelled" : term.is_kept ? "kept" : "dropped"});
+               !term.cost     ? "unmodelled"
+               : term.is_kept ? "kept"
+                              : "dropped"});
   }
   table.print();
 }
 
 void print_models(const sim::Budget& budget) {
   fmt::print("\nThe full model, and the cheapest found that keeps the limit\n");
-  Table table({"<model", "ns/s", "faster", "predicted, m", "measured, m", "limit, m", "RMS, m", "RMS/sigma",
-               "NEES", "predicted NEES", "diverged"});
+  Table table({"<model", "ns/s", "faster", "predicted, m", "measured, m", "limit, m", "RMS, m",
+               "RMS/sigma", "NEES", "predicted NEES", "diverged"});
   for (const auto& [model, title] :
        {std::pair{&budget.full, "full"}, std::pair{&budget.standard, "full, P every 0.1 s"},
         std::pair{&budget.at_full_rate, "reduced, full IMU rate"},
@@ -60,9 +62,9 @@ void print_models(const sim::Budget& budget) {
     const sim::CampaignResult& r = model->measured.figures;
     table.add({title, number(model->cost.median_ns_per_s, 0),
                number(budget.full.cost.median_ns_per_s / model->cost.median_ns_per_s, 2),
-               number(model->predicted.error_m, 3),
-               number(model->measured.error_m, 3), number(budget.scene.budget.limit_m, 3),
-               number(r.rms_horizontal_m, 3), number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
+               number(model->predicted.error_m, 3), number(model->measured.error_m, 3),
+               number(budget.scene.budget.limit_m, 3), number(r.rms_horizontal_m, 3),
+               number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
                number(model->predicted.nees, 2), fmt::format("{}", r.diverged)});
   }
   table.print();
@@ -70,10 +72,11 @@ void print_models(const sim::Budget& budget) {
 
 void print_verdict(const sim::Budget& budget) {
   const sim::CampaignResult& r = budget.full.measured.figures;
-  fmt::print("\nThe reduced model {} the limit and claims {} (NEES {:.2f} to {:.2f} is consistent)\n",
-             budget.keeps_limit ? "keeps" : "misses",
-             budget.is_as_honest ? "as honestly as the full model" : "more than it keeps",
-             r.nees_low, r.nees_high);
+  fmt::print(
+      "\nThe reduced model {} the limit and claims {} (NEES {:.2f} to {:.2f} is consistent)\n",
+      budget.keeps_limit ? "keeps" : "misses",
+      budget.is_as_honest ? "as honestly as the full model" : "more than it keeps", r.nees_low,
+      r.nees_high);
 }
 
 Json model_json(const sim::ModelBudget& model) {
@@ -96,14 +99,14 @@ Json model_json(const sim::ModelBudget& model) {
 
 }  // namespace
 
-void print_budget(const sim::Budget& budget, int repeat) {
-  print_conditions(budget, repeat);
+void print_model_budget(const sim::Budget& budget, int repeat) {
+  print_budget_conditions(budget, repeat);
   print_terms(budget);
   print_models(budget);
   print_verdict(budget);
 }
 
-Json budget_json(const sim::Budget& budget) {
+Json model_budget_json(const sim::Budget& budget) {
   const double limit_m = budget.scene.budget.limit_m;
   Json terms = Json::array();
   for (const sim::TermBudget& term : budget.terms) {
@@ -127,7 +130,7 @@ Json budget_json(const sim::Budget& budget) {
           {"speedup", budget.full.cost.median_ns_per_s / budget.reduced.cost.median_ns_per_s}};
 }
 
-std::string budget_comment(const sim::Budget& budget) {
+std::string model_budget_comment(const sim::Budget& budget) {
   const sim::ModelBudget& reduced = budget.reduced;
   return fmt::format(
       "The cheapest filter found for the scene '{}' within {:g} m ({}): {:.3f} m in {} trials,\n"

@@ -9,11 +9,11 @@
 
 namespace leeway::cli {
 
-void print_budget(const sim::Budget& budget, int repeat);
+void print_model_budget(const sim::Budget& budget, int repeat);
 
-Json budget_json(const sim::Budget& budget);
+Json model_budget_json(const sim::Budget& budget);
 
 /// What the reduced filter is, for the top of its file.
-std::string budget_comment(const sim::Budget& budget);
+std::string model_budget_comment(const sim::Budget& budget);
 
 }  // namespace leeway::cli

@@ -20,10 +20,9 @@ namespace {
 using test::AnalyticMotion;
 using test::near;
 
-constexpr std::array kSchemes{Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler,
-                              Scheme::kTrapezoid,     Scheme::kOneSample,
-                              Scheme::kTwoSample,     Scheme::kRungeKutta4,
-                              Scheme::kConing,        Scheme::kSculling};
+constexpr std::array kSchemes{
+    Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler, Scheme::kTrapezoid, Scheme::kOneSample,
+    Scheme::kTwoSample,     Scheme::kRungeKutta4,       Scheme::kConing,    Scheme::kSculling};
 constexpr std::array kGravities{GravityModel::kConstant, GravityModel::kJ2, GravityModel::kNormal};
 constexpr std::array kRotations{EarthRotation::kOff, EarthRotation::kOn, EarthRotation::kTurnAlone,
                                 EarthRotation::kCoriolisAlone};

@@ -97,8 +97,7 @@ TEST_CASE("without Coriolis a straight line is missed by omega v sin(latitude) t
 
 TEST_CASE("without the Earth's turn the platform tilts: g omega cos(latitude) t^3 / 6") {
   const Scene scene = quiet_scene(static_trajectory());
-  const double tilt_rate_radps =
-      wgs84::kRotationRateRadps * std::cos(kDefaultOrigin.lat_rad);
+  const double tilt_rate_radps = wgs84::kRotationRateRadps * std::cos(kDefaultOrigin.lat_rad);
   const double expected_m = 9.806 * tilt_rate_radps * 30.0 * 30.0 * 30.0 / 6.0;
   // The turn about the vertical moves nothing at rest, and g is known to 1e-4.
   CHECK(near(first_error_m(scene, {ModelTerm::kEarthTurn}), expected_m, 1e-3 * expected_m));
@@ -247,8 +246,8 @@ TEST_CASE("the reduced filter in a campaign errs as it does in the budget") {
   Scene scene = drive_scene();
   scene.trials = 4;
   const FilterModel model = without(
-      full_model(scene), {ModelTerm::kFifthRate, ModelTerm::kTenthCovariance,
-                          ModelTerm::kBiasDecay, ModelTerm::kCoriolis, ModelTerm::kSculling});
+      full_model(scene), {ModelTerm::kFifthRate, ModelTerm::kTenthCovariance, ModelTerm::kBiasDecay,
+                          ModelTerm::kCoriolis, ModelTerm::kSculling});
   const TrialPlan plan(scene, {}, 1);
   const MeasuredAccuracy in_budget = measured({{&plan, model}}, 1, {}).front();
   Scene reduced = with_model(scene, model);

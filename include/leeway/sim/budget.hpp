@@ -75,9 +75,9 @@ struct PredictedAccuracy {
 
 /// What they are by trials.
 struct MeasuredAccuracy {
-  double error_m{};             ///< by the scene's metric, empirical
-  double difference_m{};        ///< root mean square of the difference to the full model's error
-  CampaignResult figures{};     ///< without NIS and counts of fixes
+  double error_m{};          ///< by the scene's metric, empirical
+  double difference_m{};     ///< root mean square of the difference to the full model's error
+  CampaignResult figures{};  ///< without NIS and counts of fixes
 };
 
 struct TermBudget {
@@ -85,9 +85,9 @@ struct TermBudget {
   double predicted_m{};  ///< contribution: PredictedAccuracy::difference_m; NaN: P would not stay
                          ///< positive without the term, and the filter would be lost
   double measured_m{};   ///< likewise
-  std::int64_t diverged{0};        ///< trials without the term with an error beyond ten claimed sigmas
-  std::optional<Cost> cost{};      ///< that the full model pays for it; none: nothing to save
-  bool is_kept{true};              ///< in the reduced model
+  std::int64_t diverged{0};    ///< trials without the term with an error beyond ten claimed sigmas
+  std::optional<Cost> cost{};  ///< that the full model pays for it; none: nothing to save
+  bool is_kept{true};          ///< in the reduced model
 };
 
 struct ModelBudget {
@@ -120,7 +120,7 @@ inline constexpr double kHonesty = 1.1;
 inline constexpr double kUsableLimit = 0.9;
 
 struct BudgetOptions {
-  int repeat{11};   ///< timed runs of every model, 1 to 1000
+  int repeat{11};  ///< timed runs of every model, 1 to 1000
   int threads{0};  ///< of what is not timed; 0: all processors
   std::function<void(double fraction)> progress{};
 };
