@@ -106,14 +106,14 @@ function confirmGrid(rows: readonly Row[]): Grid[] {
     {
       caption: "Monte Carlo trials of the whole nonlinear filter at these intervals",
       headings: ["IMU", "limit, m", "interval, s", "trials", "RMS / claimed", "RMS / true", "NEES",
-        "band", "verdict"],
+        "95 % band", "verdict"],
       rows: confirmed.map((row) => {
         const c = row.confirm as Confirm;
         return [
           nameOf(row), short(row.limit_m), short(row.interval_s), String(c.trials),
           ratio(c.rms_over_sigma), ratio(c.rms_over_true), ratio(c.nees),
           `${c.nees_low.toFixed(2)} to ${c.nees_high.toFixed(2)}`,
-          row.consistent ? "confirmed" : `contradicted, ${foundBy(c)}`,
+          row.consistent ? "✓" : `✗ ${foundBy(c)}`,
         ];
       }),
     },
