@@ -1,4 +1,5 @@
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,7 @@ namespace {
 struct IntervalOptions {
   SceneChoice scene{};
   int confirm_trials{0};
+  std::vector<double> confirm_limits_m{};
   std::filesystem::path report{};
   bool json{false};
 };
@@ -45,25 +47,41 @@ std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
   return scenes;
 }
 
-int run(const IntervalOptions& options) {
-  const std::vector<double> limits_m = options.scene.limits_m.empty()
-                                           ? std::vector<double>{1.0, 3.0, 10.0, 30.0, 100.0}
-                                           : options.scene.limits_m;
+/// @throws Error when an answer is to be confirmed that was not asked for.
+std::vector<double> limits_of(const IntervalOptions& options) {
+  std::vector<double> limits_m = options.scene.limits_m;
+  if (limits_m.empty()) limits_m = {1.0, 3.0, 10.0, 30.0, 100.0};
+  for (const double limit_m : options.confirm_limits_m) {
+    if (std::find(limits_m.begin(), limits_m.end(), limit_m) != limits_m.end()) continue;
+    throw Error(fmt::format("--confirm-limit {:g}: not among the limits, which are {:g} m", limit_m,
+                            fmt::join(limits_m, ", ")));
+  }
+  return limits_m;
+}
+
+/// @param series  gets the curves behind the answers
+std::vector<SolvedImu> solve(const IntervalOptions& options, Json& series) {
+  const std::vector<double> limits_m = limits_of(options);
   const std::vector<sim::Scene> scenes = scenes_to_solve(options.scene);
   std::vector<SolvedImu> solved;
-  Json series = Json::object();
-  {
-    Progress progress("interval");
-    for (const sim::Scene& scene : scenes) {
-      const auto done = static_cast<double>(solved.size());
-      const auto all = static_cast<double>(scenes.size());
-      IntervalSeries curves;
-      const auto show = [&](double fraction) { progress.show((done + fraction) / all); };
-      solved.push_back({scene, sim::solve_intervals(scene, limits_m, curves.observed({}), show)});
-      curves.add_to(series, scene.imu_name);
-    }
+  Progress progress("interval");
+  for (const sim::Scene& scene : scenes) {
+    const auto done = static_cast<double>(solved.size());
+    const auto all = static_cast<double>(scenes.size());
+    IntervalSeries curves;
+    const auto show = [&](double fraction) { progress.show((done + fraction) / all); };
+    solved.push_back({scene, sim::solve_intervals(scene, limits_m, curves.observed({}), show)});
+    curves.add_to(series, scene.imu_name);
   }
-  if (options.confirm_trials > 0) confirm(solved, options.confirm_trials);
+  return solved;
+}
+
+int run(const IntervalOptions& options) {
+  Json series = Json::object();
+  std::vector<SolvedImu> solved = solve(options, series);
+  if (options.confirm_trials > 0) {
+    confirm(solved, options.confirm_trials, options.confirm_limits_m);
+  }
   const Json answer = interval_json(solved);
   if (options.json) {
     print_json(answer);
@@ -85,6 +103,11 @@ void add_interval_command(CLI::App& program, int& exit_code) {
                   "run so many Monte Carlo trials of the whole filter at every answer")
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
+  app->add_option("--confirm-limit", options->confirm_limits_m,
+                  "confirm the answers for these limits only, m; several with commas")
+      ->delimiter(',')
+      ->type_name("M")
+      ->needs("--confirm");
   add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(

@@ -93,12 +93,16 @@ class Confirmer {
 
 }  // namespace
 
-void confirm(std::vector<SolvedImu>& solved, int trials) {
+void confirm(std::vector<SolvedImu>& solved, int trials, const std::vector<double>& limits_m) {
+  const auto is_asked = [&limits_m](double limit_m) {
+    return limits_m.empty() ||
+           std::find(limits_m.begin(), limits_m.end(), limit_m) != limits_m.end();
+  };
   for (SolvedImu& imu : solved) {
     const sim::ErrorTrack track = sim::error_track(imu.scene);
     for (const sim::Interval& answer : imu.intervals) {
       imu.confirmations.emplace_back();
-      if (std::isnan(answer.interval_s)) continue;
+      if (std::isnan(answer.interval_s) || !is_asked(answer.limit_m)) continue;
       Progress progress(
           fmt::format("confirm {} at {:.1f} s", imu.scene.imu_name, answer.interval_s));
       imu.confirmations.back() = Confirmer(imu.scene, track, trials, progress).confirm(answer);

@@ -29,6 +29,7 @@ struct SolvedImu {
 };
 
 /// Fills in the confirmations, showing progress.
-void confirm(std::vector<SolvedImu>& solved, int trials);
+/// @param limits_m  of which answers; empty: of all
+void confirm(std::vector<SolvedImu>& solved, int trials, const std::vector<double>& limits_m);
 
 }  // namespace leeway::cli

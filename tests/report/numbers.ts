@@ -85,8 +85,92 @@ function checkCompare(results: unknown, tables: Tables): void {
   }
 }
 
+interface DriftRow {
+  readonly imu: string;
+  readonly range: string;
+  readonly reading: string;
+  readonly error_100s_m: number;
+}
+
+function checkDrift(results: unknown, tables: Tables): void {
+  const rows = results as DriftRow[];
+  for (const [reading, chart, range] of [
+    ["complete", "drift-complete", "mid"],
+    ["paper_assumptions", "drift-paper-assumptions", "low"],
+  ] as const) {
+    for (const row of rows.filter((r) => r.reading === reading && r.range === range)) {
+      const at100s = rowsIn(tables, chart, row.imu).find((r) => numberIn(r, "time, s") === 100);
+      assert.equal(numberIn(at100s, "3-D position error, m"), row.error_100s_m);
+    }
+  }
+  const printed = rows.filter((row) => row.reading === "paper");
+  const points = rowsIn(tables, "drift-complete", "Table 2 of the paper");
+  assert.equal(points.length, 2 * printed.length, "two cells of Table 2 for each class");
+}
+
+interface AnalyzeResults {
+  readonly worst_s: number;
+  readonly budget: readonly { readonly source: string; readonly north_m2: number; readonly east_m2: number }[];
+}
+
+/** The sources add up to the true error at the worst fix, which is a point of the other chart. */
+function checkAnalyze(results: unknown, tables: Tables): void {
+  const { budget, worst_s } = results as AnalyzeResults;
+  const bars = tables.get("sources") ?? [];
+  assert.equal(bars.length, budget.length);
+  const sum = Math.hypot(...bars.map((row) => numberIn(row, "horizontal error, m")));
+  const there = rowsIn(tables, "sigma-horizontal", "true")
+    .filter((r) => Math.abs(numberIn(r, "time, s") - worst_s) < 1e-6)
+    .map((r) => numberIn(r, "horizontal sigma, m"));
+  assert(Math.abs(sum / Math.max(...there) - 1) < kSingle, `${sum} m of sources, ${there} m drawn`);
+}
+
+interface CampaignResults {
+  readonly rms_ned_m: readonly number[];
+}
+
+function checkCampaign(results: unknown, tables: Tables): void {
+  const found = rowsIn(tables, "axes", "RMS found").map((r) => numberIn(r, "error before a fix, m"));
+  assert.deepEqual(found, (results as CampaignResults).rms_ned_m);
+  const median = rowsIn(tables, "fan", "median").map((r) => numberIn(r, "horizontal error, m"));
+  const most = rowsIn(tables, "fan", "95 % are below").map((r) => numberIn(r, "horizontal error, m"));
+  assert.equal(median.length, 30, "a fix every 10 s for 300 s");
+  assert(median.every((error, i) => error > 0 && error <= (most[i] as number)));
+}
+
+interface BudgetResults {
+  readonly terms: readonly { readonly term: string; readonly measured_m: number; readonly kept: boolean }[];
+}
+
+function checkBudget(results: unknown, tables: Tables): void {
+  for (const { term, measured_m, kept } of (results as BudgetResults).terms) {
+    const name = kept ? `${term} (kept)` : term;
+    const bar = (tables.get("terms-error") ?? []).find((row) => Object.values(row).includes(name));
+    assert.equal(numberIn(bar, "error without the term, m"), measured_m);
+  }
+}
+
+interface AtlasResults {
+  readonly cells: readonly { readonly scene: string; readonly group: string; readonly verdict: string }[];
+}
+
+function checkAtlas(results: unknown, tables: Tables): void {
+  const { cells } = results as AtlasResults;
+  const drawn = tables.get("matrix") ?? [];
+  assert.equal(drawn.length, new Set(cells.map((c) => `${c.scene} ${c.group}`)).size);
+  for (const { scene, group, verdict } of cells) {
+    const cell = drawn.find((row) => row["variants"] === group && Object.values(row).includes(scene));
+    assert.equal(cell?.["series"], verdict);
+  }
+}
+
 export const kNumbers: Readonly<Record<string, Check>> = {
+  analyze: checkAnalyze,
+  atlas: checkAtlas,
+  budget: checkBudget,
+  campaign: checkCampaign,
   compare: checkCompare,
+  drift: checkDrift,
   fuse: checkFuse,
   interval: checkInterval,
 };

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <map>
 
 #include "leeway/error.hpp"
 #include "leeway/imu_class.hpp"
@@ -61,6 +62,28 @@ TEST_CASE("a longer interval than the answer breaks the budget") {
   Scene longer = scene;
   longer.gnss.interval_s = 1.01 * answer.interval_s;
   CHECK(analyze(longer, error_track(longer)).true_m > 30.0);
+}
+
+TEST_CASE("observers see the answer, and the limit passed without fixes") {
+  Scene scene = defined_case(ImuClass::kTactical);
+  scene.duration_s = 1200.0;
+  std::map<double, double> true_m;
+  double before_m = 0.0;
+  double passed_s = 0.0;
+  IntervalConfig config;
+  config.observer = [&](double interval_s, const CovarianceAnalysis& analysis) {
+    true_m[interval_s] = analysis.true_m;
+  };
+  config.free_inertial_observer = [&](double t_s, double error_m) {
+    if (before_m < 30.0 && error_m >= 30.0) passed_s = t_s;
+    before_m = error_m;
+  };
+  const Interval answer = solve_intervals(scene, {30.0}, config).front();
+  REQUIRE(true_m.contains(answer.interval_s));
+  CHECK(true_m[answer.interval_s] == answer.true_m);
+  CHECK(true_m.size() > 3);
+  CHECK(passed_s >= answer.free_inertial_s);
+  CHECK(passed_s - answer.free_inertial_s < 1.01);  // a step
 }
 
 TEST_CASE("limits out of reach are said to be") {

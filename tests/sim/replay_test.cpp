@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "leeway/earth.hpp"
 #include "leeway/error.hpp"
 #include "leeway/sim/gnss_simulator.hpp"
 #include "leeway/sim/imu_simulator.hpp"
@@ -60,6 +62,42 @@ Alignment start_of(const ReplayInput& input, const ImuErrorModel& imu, const Ini
 }
 
 }  // namespace
+
+TEST_CASE("an observer is told what the result counts") {
+  const test::TempDir dir;
+  const ImuErrorModel imu = imu_class_model(ImuClass::kTactical, RangeEnd::kMid);
+  ReplayInput input = record(dir, 120.0, imu);
+  input.outages = {{80.0, 20.0}};
+  double error_sq_m2 = 0.0;
+  std::int64_t epochs = 0;
+  std::int64_t fixes = 0;
+  std::array<std::uint64_t, kVerdicts> verdicts{};
+  std::vector<OutageEpoch> outage;
+  ReplayObserver observer;
+  observer.epoch = [&](const Solution& s, const std::optional<TruthRecord>& truth) {
+    REQUIRE(truth);
+    const Eigen::Vector3d error_n_m = ned_to_ecef(truth->nav.position).transpose() *
+                                      (s.nav.r_e_m - ecef_from_geodetic(truth->nav.position));
+    error_sq_m2 += error_n_m.head<2>().squaredNorm();
+    ++epochs;
+  };
+  observer.fix = [&](const UpdateReport&) { ++fixes; };
+  observer.verdict = [&](Time, Verdict v) { ++verdicts[static_cast<std::size_t>(v)]; };
+  observer.outage = [&](const OutageEpoch& e) { outage.push_back(e); };
+  const ReplayResult r = replay(input, white_gnss(imu), observer);
+
+  CHECK(epochs == r.rms.epochs);
+  const double rms_m = std::sqrt(error_sq_m2 / static_cast<double>(epochs));
+  CHECK(test::near(rms_m, r.rms.horizontal_m, 1e-9));
+  CHECK(fixes == r.fixes);
+  CHECK(verdicts[static_cast<std::size_t>(Verdict::kFused)] ==
+        r.verdicts[static_cast<std::size_t>(Verdict::kFused)]);
+  CHECK(verdicts[static_cast<std::size_t>(Verdict::kAccepted)] == 0);
+  REQUIRE(outage.size() == 20);  // a withheld fix each second
+  CHECK(outage.back().since_s == 20.0);
+  CHECK(outage.back().error_h_m == r.outages[0].end_error_h_m);
+  CHECK(outage.back().sigma_h_m == r.outages[0].end_sigma_h_m);
+}
 
 TEST_CASE("perfect sensors from a perfect start: an outage costs next to nothing") {
   const test::TempDir dir;

@@ -114,6 +114,20 @@ TEST_CASE("only the end of the run is scored, by the arrival of its fixes") {
   CHECK(run_trial(TrialPlan(scene, 48.0), 1).epochs == 9);
 }
 
+TEST_CASE("an observer is told the errors that are scored") {
+  const TrialPlan plan(loop_scene(100.0));
+  double error_sq_m2 = 0.0;
+  int beyond = 0;
+  const TrialScore score = run_trial(plan, 1, [&](const TrialEpoch& epoch) {
+    error_sq_m2 += epoch.error_h_m * epoch.error_h_m;
+    beyond += epoch.error_h_m > epoch.claimed_r95_m ? 1 : 0;
+  });
+  REQUIRE(score.epochs == 20);  // all of them
+  // Errors of some metres taken as differences of positions of 6e6 m: a relative 1e-9.
+  CHECK(near(error_sq_m2 / score.error_sq_n_m2.head<2>().sum(), 1.0, 1e-6));
+  CHECK(beyond == score.beyond_r95);
+}
+
 TEST_CASE("fixes in an outage are not there") {
   Scene scene = loop_scene(160.0);
   scene.gnss.outages = {{20.0, 60.0}};  // those at 25 to 80 s

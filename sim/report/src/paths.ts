@@ -25,20 +25,20 @@ const at = (values: Values, i: number): number => values[i] as number;
 const xPx = (u: uPlot, v: number): number => u.valToPos(v, "x", true);
 const yPx = (u: uPlot, v: number): number => u.valToPos(v, "y", true);
 
+/** Whether a value has a place on the scale: a number, and positive on a logarithmic one. */
+function isOn(u: uPlot, scale: "x" | "y", value: number): boolean {
+  return Number.isFinite(value) && (u.scales[scale]?.distr !== 3 || value > 0);
+}
+
 function line(u: uPlot, s: Series): Path2D {
   const path = new Path2D();
-  const logY = u.scales["y"]?.distr === 3;
   let open = false;
   for (let i = 0; i < s.x.length; ++i) {
-    const y = at(s.y, i);
-    if (!Number.isFinite(y) || (logY && y <= 0)) {
-      open = false;
-      continue;
-    }
-    const px = xPx(u, at(s.x, i));
-    if (open) path.lineTo(px, yPx(u, y));
-    else path.moveTo(px, yPx(u, y));
-    open = true;
+    const [x, y] = [at(s.x, i), at(s.y, i)];
+    const shown = isOn(u, "x", x) && isOn(u, "y", y);
+    if (shown && open) path.lineTo(xPx(u, x), yPx(u, y));
+    else if (shown) path.moveTo(xPx(u, x), yPx(u, y));
+    open = shown;
   }
   return path;
 }
@@ -83,7 +83,8 @@ function columns(u: uPlot, s: Series, highs: Values): Path2D {
 
 function band(u: uPlot, s: Series, highs: Values): Path2D {
   const path = new Path2D();
-  const isShown = (i: number): boolean => Number.isFinite(at(s.y, i)) && Number.isFinite(at(highs, i));
+  const isShown = (i: number): boolean =>
+    isOn(u, "x", at(s.x, i)) && isOn(u, "y", at(s.y, i)) && isOn(u, "y", at(highs, i));
   for (let begin = 0; begin < s.x.length; ) {
     if (!isShown(begin)) {
       ++begin;
@@ -106,7 +107,7 @@ function markers(u: uPlot, s: Series): Path2D {
   const crowded = s.x.length > kCrowd;
   const r = kMarkerPx * devicePixelRatio * (s.style !== "points" ? 1 : crowded ? 0.5 : 1.2);
   for (let i = 0; i < s.x.length; ++i) {
-    if (!Number.isFinite(at(s.x, i)) || !Number.isFinite(at(s.y, i))) continue;
+    if (!isOn(u, "x", at(s.x, i)) || !isOn(u, "y", at(s.y, i))) continue;
     marker(path, s.colour % 4, xPx(u, at(s.x, i)), yPx(u, at(s.y, i)), r);
   }
   return path;
@@ -134,7 +135,7 @@ function bars(u: uPlot, s: Series): Path2D {
   const origin = u.scales["x"]?.distr === 3 ? (u.scales["x"].min ?? 1) : 0;
   const half = Math.abs(yPx(u, 1) - yPx(u, 0)) * (s.thin ? 0.12 : 0.34);
   for (let i = 0; i < s.x.length; ++i) {
-    if (!Number.isFinite(at(s.x, i))) continue;
+    if (!isOn(u, "x", at(s.x, i))) continue;
     const [from, to] = [xPx(u, origin), xPx(u, at(s.x, i))];
     path.rect(Math.min(from, to), yPx(u, at(s.y, i)) - half, Math.abs(to - from), 2 * half);
   }

@@ -1,6 +1,6 @@
 /** A chart on a canvas: uPlot's axes, scales and cursor, with the window that is in sight. */
 import uPlot from "uplot";
-import { axesOf, scaleOf } from "./axes";
+import { axesOf, rowHeightPx, scaleOf } from "./axes";
 import { wholeOf, type Axis, type Chart, type Extent, type Series, type Window } from "./chart";
 import { drawOver, drawUnder } from "./decorations";
 import { lowerBound, pathsOf } from "./paths";
@@ -40,7 +40,7 @@ export class Plot {
       ...sizeOf(chart, host),
       legend: { show: false },
       scales: { x: scaleOf(chart.x), y: { ...scaleOf(chart.y), dir: chart.y.categories ? -1 : 1 } },
-      axes: axesOf(chart, host.clientWidth),
+      axes: axesOf(chart),
       series: [{}, ...chart.series.map(optionsOf)],
       cursor: {
         points: { show: false },
@@ -169,12 +169,10 @@ function optionsOf(series: Series): uPlot.Series {
   };
 }
 
-const kRowPx = 26;
-
 function sizeOf(chart: Chart, host: HTMLElement): { width: number; height: number } {
   const width = host.clientWidth;
-  const rows = chart.y.categories?.length;
-  if (rows !== undefined) return { width, height: 110 + kRowPx * rows };
+  const rows = chart.y.categories;
+  if (rows) return { width, height: 110 + rowHeightPx(rows, width) * rows.length };
   const ratio = chart.map ? 0.75 : 0.5;
   return { width, height: Math.round(Math.min(Math.max(ratio * width, 280), 460)) };
 }

@@ -1,11 +1,12 @@
 /** Numbers and lists as text. */
 
-/** Three significant digits, or "-" for what is not defined. */
+/** Three significant digits or whole numbers, or "-" for what is not defined. */
 export function short(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "-";
   const size = Math.abs(value);
-  if (value !== 0 && (size < 1e-3 || size >= 1e6)) return value.toExponential(2);
-  return String(Number(value.toPrecision(size >= 100 ? Math.ceil(Math.log10(size + 1)) : 3)));
+  if (size >= 100 && size < 1e6) return String(Math.round(value));
+  const digits = Number(value.toPrecision(3));
+  return value !== 0 && (size < 1e-3 || size >= 1e6) ? digits.toExponential() : String(digits);
 }
 
 /** "58.6 s", "4.7 min (283 s)", "4 h (14400 s)". */
@@ -27,7 +28,7 @@ export function list(items: readonly string[]): string {
 }
 
 export function percent(fraction: number): string {
-  return `${short(100 * fraction)} %`;
+  return fraction > 0 && fraction < 1e-4 ? "< 0.01 %" : `${short(100 * fraction)} %`;
 }
 
 export function count(n: number, one: string, many = `${one}s`): string {

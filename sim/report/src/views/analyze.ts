@@ -38,7 +38,7 @@ export function analyzeView(report: Report): View {
         caption: `Where the true error comes from, at ${short(results.worst_s)} s`,
         headings: ["source", "north, m", "east, m", "down, m", "horizontal share"],
         rows: budget.map((line) => [
-          line.source, ...[line.north_m2, line.east_m2, line.down_m2].map((m2) => short(Math.sqrt(m2))),
+          spoken(line.source), ...[line.north_m2, line.east_m2, line.down_m2].map((m2) => short(Math.sqrt(m2))),
           percent(line.horizontal_share),
         ]),
       },
@@ -58,12 +58,14 @@ export function analyzeView(report: Report): View {
   };
 }
 
+const spoken = (source: string): string => source.replaceAll("_", " ");
+
 function answer(results: Results, budget: readonly BudgetLine[], scene: SceneInput): string[] {
   const ratio = results.optimistic_by;
   const honesty = Math.abs(ratio - 1) < 0.005
     ? "as honest as it can be"
     : ratio > 1 ? `optimistic by a factor of ${short(ratio)}` : `pessimistic by a factor of ${short(1 / ratio)}`;
-  const most = budget.slice(0, 3).map((line) => `${line.source} (${percent(line.horizontal_share)})`);
+  const most = budget.slice(0, 3).map((line) => `${spoken(line.source)} (${percent(line.horizontal_share)})`);
   return [
     `Largest error before a fix in the last ${short(results.window_s)} s: ` +
       `${withUnit(results.true_m, "m")}, at ${short(results.worst_s)} s; it is ${metricOf(scene)}.`,
@@ -100,7 +102,7 @@ function budgetChart(budget: readonly BudgetLine[]): Chart {
     title: "Where the true error comes from",
     caption: "Horizontal error (DRMS) that each source alone makes, at the worst fix.",
     x: { label: "horizontal error", unit: "m" },
-    y: { label: "", unit: "", categories: budget.map((line) => line.source) },
+    y: { label: "", unit: "", categories: budget.map((line) => spoken(line.source)) },
     series: [
       {
         label: "horizontal", style: "bars", colour: 0, y: budget.map((_line, i) => i),

@@ -49,11 +49,11 @@ export function campaignView(report: Report): View {
 
 function answer(r: Results): string[] {
   const [low, high] = r.nees_band;
-  const verdict = r.nees < low ? "it errs less than it claims" : r.nees > high
-    ? "it errs more than it claims" : "it errs as much as it claims";
+  const verdict = r.nees < low ? "The filter errs less than it claims"
+    : r.nees > high ? "The filter errs more than it claims" : "The filter errs as much as it claims";
   return [
-    `NEES: ${short(r.nees)} for 15 states, where 95 % of honest campaigns have ` +
-      `${short(low)} to ${short(high)}; ${verdict}.`,
+    `${verdict}: NEES is ${short(r.nees)} for 15 states, where 95 % of honest campaigns have ` +
+      `${short(low)} to ${short(high)}.`,
     `Horizontal error: RMS ${withUnit(r.rms_horizontal_m, "m")}, ${r.rms_over_sigma.toFixed(3)} of ` +
       `the ${withUnit(r.sigma_horizontal_m, "m")} claimed.`,
     r.trials_diverged === 0

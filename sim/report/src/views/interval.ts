@@ -106,18 +106,24 @@ function confirmGrid(rows: readonly Row[]): Grid[] {
     {
       caption: "Monte Carlo trials of the whole nonlinear filter at these intervals",
       headings: ["IMU", "limit, m", "interval, s", "trials", "RMS / claimed", "RMS / true", "NEES",
-        "band", "verdict"],
+        "95 % band", "verdict"],
       rows: confirmed.map((row) => {
         const c = row.confirm as Confirm;
         return [
           nameOf(row), short(row.limit_m), short(row.interval_s), String(c.trials),
-          c.rms_over_sigma.toFixed(3), c.rms_over_true.toFixed(3), c.nees.toFixed(2),
+          ratio(c.rms_over_sigma), ratio(c.rms_over_true), ratio(c.nees),
           `${c.nees_low.toFixed(2)} to ${c.nees_high.toFixed(2)}`,
-          row.consistent ? "confirmed" : `contradicted: ${withUnit(c.monte_carlo_interval_s, "s")}`,
+          row.consistent ? "✓" : `✗ ${foundBy(c)}`,
         ];
       }),
     },
   ];
+}
+
+const ratio = (value: number): string => (value < 100 ? value.toFixed(3) : short(value));
+
+function foundBy({ monte_carlo_interval_s: seconds }: Confirm): string {
+  return seconds === null ? "none found" : `by trials ${withUnit(seconds, "s")}`;
 }
 
 function trust(rows: readonly Row[], scene: SceneInput): string[] {
@@ -147,10 +153,12 @@ function confirmationInWords(rows: readonly Row[]): string[] {
       `${trials} Monte Carlo trials of the whole nonlinear filter each: it errs as the analysis ` +
       "says and as it claims.",
   ];
+  const untried = rows.filter((row) => row.confirm === null && row.interval_s !== null).length;
+  if (untried > 0) words.push(`Not tried: the other ${count(untried, "answer")}, by the analysis alone.`);
   if (failed.length > 0) {
     words.push(
       `Contradicted (✗): ${list(failed.map(name))}. There the filter errs otherwise than it ` +
-        "claims, and the answer above is the interval at which the trials met the limit.",
+        "claims, and the answer above is the interval at which the trials met the limit, if any.",
     );
   }
   return words;
@@ -189,10 +197,11 @@ function errorChart(
       x: table.column("interval_s"), y: table.column("true_m"),
     }),
   );
-  const trialled = rows.filter((row) => row.confirm !== null && row.interval_s !== null);
+  // An error of trials that diverged would dwarf the chart; the table has it.
+  const trialled = rows.filter((row) => row.confirm?.diverged === 0 && row.interval_s !== null);
   if (trialled.length > 0) {
     lines.push({
-      label: "Monte Carlo", style: "points", colour: 5,
+      label: "Monte Carlo", style: "points", colour: 6,
       x: trialled.map((row) => row.interval_s as number),
       y: trialled.map((row) => row.error_m * (row.confirm as Confirm).rms_over_true),
       names: trialled.map((row) => `${nameOf(row)}, ${withUnit(row.limit_m, "m")}`),
@@ -203,7 +212,7 @@ function errorChart(
     title: "Error against the time between fixes",
     caption:
       `True horizontal error (${scene.metric}) just before a fix. Where a curve crosses a limit ` +
-      "is the longest interval. Markers are what was computed.",
+      "is the longest interval. Markers are what was computed; trials that diverged are left out.",
     x: { label: "time between fixes", unit: "s", log: true },
     y: { label: "horizontal error before a fix", unit: "m", log: true },
     series: lines, levels: levels(limits), hover: "point",

@@ -68,6 +68,10 @@ function scaled(values: Values, factor: number): Values {
   return Float32Array.from(values, (v) => v * factor);
 }
 
+function greyIn(spans: readonly Span[]): string {
+  return spans.length > 0 ? " Grey: fixes withheld, each time on a branch of its own." : "";
+}
+
 function errorChart({ solution, spans }: Run, axis: number): Chart {
   const name = kAxes[axis] as string;
   const letter = name.charAt(0);
@@ -84,9 +88,8 @@ function errorChart({ solution, spans }: Run, axis: number): Chart {
     id: `error-${name}`,
     title: hasError ? `Error ${name}` : `Claimed uncertainty ${name}`,
     caption: hasError
-      ? "Estimate minus truth, within three sigma as the filter claims them. Grey: fixes withheld, " +
-        "each time on a branch of its own."
-      : "Three sigma as the filter claims them; without truth there is no error to show.",
+      ? `Estimate minus truth, within three sigma as the filter claims them.${greyIn(spans)}`
+      : `Three sigma as the filter claims them; without truth there is no error to show.${greyIn(spans)}`,
     x: time, y: { label: hasError ? `error ${name}` : `3 sigma ${name}`, unit: "m" }, series, spans, hover: "x",
   };
 }
@@ -151,7 +154,7 @@ function verdictChart({ name, spans }: Run, report: Report): Chart[] {
   return [
     {
       id: "verdicts", title: "What became of the inputs",
-      caption: "Every fix, and whatever else was not simply taken. Grey: withheld for an outage.",
+      caption: `Every fix, and whatever else was not simply taken.${greyIn(spans)}`,
       x: time, y: { label: "", unit: "", categories: met.map(({ verdict }) => verdict) },
       series: met.map(({ verdict, t }, row) => ({
         label: verdict, style: "points", colour: row, x: t, y: new Float32Array(t.length).fill(row),
