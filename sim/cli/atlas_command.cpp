@@ -8,6 +8,7 @@
 #include "leeway/sim/atlas.hpp"
 #include "leeway/sim/atlas_expected.hpp"
 #include "output.hpp"
+#include "report.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -21,6 +22,7 @@ struct AtlasCommand {
   std::filesystem::path csv{};
   std::filesystem::path markdown{};
   std::filesystem::path expected{};
+  std::filesystem::path report{};
 };
 
 std::vector<sim::AtlasResult> run_scenes(const AtlasCommand& options,
@@ -49,15 +51,18 @@ int run(const AtlasCommand& options) {
   if (!options.expected.empty()) return write_expected(options);
   const auto results = run_scenes(options, options.atlas);
   const auto surprises = sim::atlas_surprises(results, options.atlas);
+  const Json answer =
+      answer_json("atlas", {{"scenes", options.scenes}, {"short", options.atlas.brief}},
+                  atlas_json(results, surprises));
   if (options.json) {
-    print_json("atlas", {{"scenes", options.scenes}, {"short", options.atlas.brief}},
-               atlas_json(results, surprises));
+    print_json(answer);
   } else {
     print_atlas(results);
     print_atlas_findings(results, surprises);
   }
   if (!options.csv.empty()) write_file(options.csv, sim::atlas_csv(results, options.atlas));
   if (!options.markdown.empty()) write_file(options.markdown, atlas_markdown(results));
+  write_report(options.report, answer);
   return surprises.empty() && !any_silent(results) ? kSuccess : kNoAnswer;
 }
 
@@ -78,6 +83,7 @@ void add_atlas_command(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
+  add_report_option(*app, options->report);
   app->add_option("--csv", options->csv, "write a row for each cell as CSV")->type_name("FILE");
   app->add_option("--markdown", options->markdown,
                   "write matrix and cells as docs/atlas.md has them")

@@ -142,6 +142,7 @@ Json atlas_json(const std::vector<sim::AtlasResult>& results,
     const sim::AtlasScene& scene = result.scene;
     for (const sim::AtlasCell& cell : result.cells) {
       cells.push_back({{"scene", scene.key},
+                       {"title", scene.title},
                        {"group", sim::name(cell.group)},
                        {"variant", cell.variant},
                        {"condition", cell.condition},

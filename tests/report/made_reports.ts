@@ -1,6 +1,6 @@
 /** A report of every command, of scenes that take a second or so. */
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 export interface MadeReport {
@@ -21,14 +21,16 @@ export function makeReports(program: string, scenes: string, work: string): Made
     return { name, path, json: JSON.parse(json) as MadeReport["json"], charts };
   };
   const loop = join(scenes, "square-loop.toml");
-  const analyze = made(
-    "analyze", ["sigma-horizontal", "sigma-down", "sources"],
-    "--scene", join(scenes, "tunnel.toml"), "--interval-s", "5",
-  );
   return [
-    analyze,
-    fixture("atlas", ["matrix"], analyze.path, work),
-    fixture("budget", ["terms-error", "terms-cost"], analyze.path, work),
+    made(
+      "analyze", ["sigma-horizontal", "sigma-down", "sources"],
+      "--scene", join(scenes, "tunnel.toml"), "--interval-s", "5",
+    ),
+    made("atlas", ["matrix"], "--scene", "frozen-transition,dead-row,coning", "--short"),
+    made(
+      "budget", ["terms-error", "terms-cost"],
+      "--scene", join(scenes, "tunnel-60s.toml"), "--trials", "20", "--repeat", "1",
+    ),
     made(
       "campaign", ["fan", "axes"],
       "--scene", loop, "--interval-s", "10", "--at", "300", "--trials", "20",
@@ -51,18 +53,6 @@ export function makeReports(program: string, scenes: string, work: string): Made
       "--scene", loop, "--interval-s", "10", "--at", "120", "--trials", "2", "--repeat", "1",
     ),
   ];
-}
-
-/** A page around an answer that is kept beside this file. */
-function fixture(name: string, charts: string[], page: string, work: string): MadeReport {
-  const json = JSON.parse(readFileSync(join("test", "fixtures", `${name}.json`), "utf8"));
-  const path = join(work, `${name}.html`);
-  const data = /(id="leeway-report">).*?(<\/script>)/s;
-  const embedded = readFileSync(page, "utf8").replace(
-    data, (_all, before, after) => before + JSON.stringify(json).replaceAll("<", "\\u003c") + after,
-  );
-  writeFileSync(path, embedded);
-  return { name, path, json: json as MadeReport["json"], charts };
 }
 
 /** @returns what fuses it */
