@@ -11,7 +11,6 @@ namespace {
 
 constexpr Duration kFurthestTime = std::chrono::seconds{4'000'000'000};  // 127 years
 constexpr double kCoastingS = 2.0;
-constexpr double kInconsistentRatio = 2.0;  // of NIS to its expectation, over 30 fixes
 
 bool all_finite(const GnssFix& fix) {
   return (!fix.position || (fix.position->r_e_m.allFinite() && fix.position->R_e_m2.allFinite())) &&
@@ -226,12 +225,14 @@ Health Navigator::health() const {
       config_.filter.gnss_correlation_s == 0.0 && f.position_noise().errors_last();
   const double ratio = std::max(health.position_nis_ratio, health.velocity_nis_ratio);
   health.optimistic_by = std::sqrt(std::max(1.0, ratio));
+  const bool is_inconsistent = f.distrusts_imu() || f.position_noise().is_inconsistent() ||
+                               f.velocity_noise().is_inconsistent();
   using State = Health::State;
-  health.state = f.gated_since()                                   ? State::kGating
-                 : health.coasting_s > kCoastingS                  ? State::kCoasting
-                 : !f.bank().collapsed()                           ? State::kHeadingOpen
-                 : f.distrusts_imu() || ratio > kInconsistentRatio ? State::kInconsistent
-                                                                   : State::kAligned;
+  health.state = f.gated_since()                  ? State::kGating
+                 : health.coasting_s > kCoastingS ? State::kCoasting
+                 : !f.bank().collapsed()          ? State::kHeadingOpen
+                 : is_inconsistent                ? State::kInconsistent
+                                                  : State::kAligned;
   return health;
 }
 

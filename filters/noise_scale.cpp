@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "leeway/filters/chi_square.hpp"
+
 namespace leeway {
 namespace {
 
-constexpr double kLargestRatio = 4.0;      // of one fix: a single outlier is the gate's business
-constexpr double kLargestNisRatio = 25.0;  // two outliers in a row shall not count for ever
-constexpr double kBandLow = 0.5;           // 90 degrees of freedom stay within with 99.99 %
+constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
+constexpr double kLargestNisRatio = 25.0;   // two outliers in a row shall not count for ever
+constexpr double kInconsistentRatio = 2.0;  // by a full window: once in 1e7
+constexpr double kFalseAlarm = 1e-6;        // by fewer fixes
+constexpr double kBandLow = 0.5;            // 90 degrees of freedom stay within with 99.99 %
 constexpr double kBandHigh = 1.6;
 constexpr double kLargestScale = 10.0;
 constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's own error changes too
@@ -21,6 +25,12 @@ void average(double& mean, std::int64_t& count, double value) {
 }
 
 }  // namespace
+
+bool NoiseScale::is_inconsistent() const {
+  if (nis_ratio_ <= kInconsistentRatio) return false;
+  const int dof = 3 * static_cast<int>(std::min<std::int64_t>(nis_count_, kWindow));
+  return nis_ratio_ > chi_square_threshold(kFalseAlarm, dof) / dof;
+}
 
 bool NoiseScale::errors_last() const {
   return change_count_ >= kWindow && change_ratio_ < kBandLow;

@@ -100,6 +100,18 @@ TEST_CASE("a modest claim is scaled down as far as allowed, no further") {
   CHECK(Receiver{.truth = 0.2}.run(1.0, 1, 3000).sigma_scale() == 1.0);
 }
 
+TEST_CASE("the first fixes of an honest receiver are not called inconsistent, those far off are") {
+  // 2026-11-28: one fix in nine has a NIS above twice its expectation, and the health said so.
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    CAPTURE(seed);
+    Receiver{}.run(1.0, seed, 40,
+                   [](const NoiseScale& scale) { CHECK_FALSE(scale.is_inconsistent()); });
+    const Receiver far_off{.offset = Eigen::Vector3d::Constant(30.0)};
+    const NoiseScale after = far_off.run(1.0, seed, 5, [](const NoiseScale&) {});
+    CHECK(after.is_inconsistent());
+  }
+}
+
 TEST_CASE("what lasts is not noise: an offset of ten sigma changes no scale, but shows") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);

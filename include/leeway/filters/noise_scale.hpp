@@ -28,6 +28,9 @@ class NoiseScale {
   /// Mean of nis / dof over the last 30 fixes or so, by the scaled claim; 1 before any.
   double nis_ratio() const { return nis_ratio_; }
 
+  /// Whether nis_ratio() is beyond what chance makes of so many fixes.
+  bool is_inconsistent() const;
+
   /// Whether errors repeat themselves from fix to fix: over a full window the innovations change by
   /// less than half of what white errors of the claimed size would make them.
   bool errors_last() const;
