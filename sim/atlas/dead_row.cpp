@@ -11,9 +11,9 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kPriorM = 10.0;
+constexpr double kRowPriorM = 10.0;
 constexpr double kPriorMps = 1.0;
-constexpr double kFixM = 1.0;
+constexpr double kRowFixM = 1.0;
 constexpr double kFixMps = 0.1;
 
 TrialStart independent_start() {
@@ -21,7 +21,7 @@ TrialStart independent_start() {
   start.estimate.nav = truth_at(static_trajectory(), 0.0).nav;
   start.P = 1e-6 * ErrorMatrix::Identity();
   start.P.diagonal().segment<3>(kDv).setConstant(kPriorMps * kPriorMps);
-  start.P.diagonal().segment<3>(kDr).setConstant(kPriorM * kPriorM);
+  start.P.diagonal().segment<3>(kDr).setConstant(kRowPriorM * kRowPriorM);
   return start;
 }
 
@@ -29,8 +29,8 @@ TrialStart independent_start() {
 GnssFix whole_fix(const TrialStart& start, Time time) {
   GnssFix fix;
   fix.time = time;
-  fix.position = {start.estimate.nav.r_e_m.array() + std::hypot(kPriorM, kFixM),
-                  kFixM * kFixM * Eigen::Matrix3d::Identity()};
+  fix.position = {start.estimate.nav.r_e_m.array() + std::hypot(kRowPriorM, kRowFixM),
+                  kRowFixM * kRowFixM * Eigen::Matrix3d::Identity()};
   fix.velocity = {start.estimate.nav.v_e_mps.array() + std::hypot(kPriorMps, kFixMps),
                   kFixMps * kFixMps * Eigen::Matrix3d::Identity()};
   return fix;
@@ -48,9 +48,9 @@ double fused_variance(double prior_sigma, double fix_sigma) {
 double worst_factor(const ErrorMatrix& P) {
   double worst = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
-    worst =
-        std::max({worst, factor_between(P(kDr + axis, kDr + axis), fused_variance(kPriorM, kFixM)),
-                  factor_between(P(kDv + axis, kDv + axis), fused_variance(kPriorMps, kFixMps))});
+    worst = std::max(
+        {worst, factor_between(P(kDr + axis, kDr + axis), fused_variance(kRowPriorM, kRowFixM)),
+         factor_between(P(kDv + axis, kDv + axis), fused_variance(kPriorMps, kFixMps))});
   }
   return worst;
 }

@@ -8,7 +8,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kSettledS = 60.0;
+constexpr double kEditSettledS = 60.0;
 
 /// A kernel whose gain leaves attitude and gyro bias alone: what is done to keep a filter from
 /// learning what it cannot know.
@@ -78,11 +78,7 @@ Scene turning_drive() {
 }
 
 double error_over_claim_of_all(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kSettledS) sums.add(truth, now);
-  });
-  return sums.sigma_ratio();
+  return errors_after(filter, trial, kEditSettledS).sigma_ratio();
 }
 
 std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {

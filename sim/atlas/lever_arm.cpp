@@ -5,8 +5,8 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kSettledS = 20.0;
-constexpr double kFixM = 0.02;
+constexpr double kSpinSettledS = 20.0;
+constexpr double kSpinFixM = 0.02;
 
 /// A vehicle that turns once in 6 s, its antenna 2 m ahead of the IMU and 1 m above.
 Scene spinning(double duration_s) {
@@ -16,7 +16,7 @@ Scene spinning(double duration_s) {
   scene.trajectory = circle({.radius_m = 5.0, .speed_mps = 5.0, .duration_s = duration_s});
   scene.imu_rate_hz = 50.0;
   set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.gnss.errors.position_sigma_n_m.setConstant(kFixM);
+  scene.gnss.errors.position_sigma_n_m.setConstant(kSpinFixM);
   scene.gnss.errors.lever_arm_b_m = {2.0, 0.0, -1.0};
   scene.filter.gnss_correlation_s = 0.0;
   scene.filter.lever_arm_b_m = scene.gnss.errors.lever_arm_b_m;
@@ -26,11 +26,7 @@ Scene spinning(double duration_s) {
 }
 
 double settled_error_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kSettledS) sums.add(truth, now);
-  });
-  return sums.position_rms_m();
+  return errors_after(filter, trial, kSpinSettledS).position_rms_m();
 }
 
 std::vector<AtlasCell> run_lever_arm(const AtlasOptions& options) {

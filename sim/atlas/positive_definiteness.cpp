@@ -5,9 +5,9 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kPriorM = 1000.0;
-constexpr double kFixM = 0.01;
-constexpr double kSettledS = 30.0;
+constexpr double kVaguePriorM = 1000.0;
+constexpr double kSharpFixM = 0.01;
+constexpr double kVagueSettledS = 30.0;
 
 /// At rest. The first fix shrinks the variance of the position by 1e10, which float has no digits
 /// for.
@@ -18,19 +18,15 @@ Scene kilometre_prior() {
   scene.trajectory = static_trajectory({.duration_s = scene.duration_s});
   scene.imu_rate_hz = 20.0;
   set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.gnss.errors.position_sigma_n_m.setConstant(kFixM);
+  scene.gnss.errors.position_sigma_n_m.setConstant(kSharpFixM);
   scene.filter.gnss_correlation_s = 0.0;
   scene.initial = InitialSigma{
-      .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kPriorM};
+      .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kVaguePriorM};
   return scene;
 }
 
 double settled_error_over_fix(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kSettledS) sums.add(truth, now);
-  });
-  return sums.position_rms_m() / kFixM;
+  return errors_after(filter, trial, kVagueSettledS).position_rms_m() / kSharpFixM;
 }
 
 std::vector<AtlasCell> run_positive_definiteness(const AtlasOptions& options) {
