@@ -8,7 +8,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kCorrelationS = 60.0;
-constexpr double kWanderSettledS = 120.0;
+constexpr double kCorrelatedSettledS = 120.0;
 
 /// Fixes every second whose error wanders over a minute.
 Scene wandering_fixes(double duration_s) {
@@ -31,7 +31,7 @@ double error_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
   double error_m2 = 0.0;
   double claimed_m2 = 0.0;
   replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) <= kWanderSettledS || !now.has_estimate()) return;
+    if (to_seconds(truth.nav.time) <= kCorrelatedSettledS || !now.has_estimate()) return;
     error_m2 += position_error_n_m(truth, now.estimate()).squaredNorm();
     if (const auto P = now.covariance()) claimed_m2 += P->block<3, 3>(kDr, kDr).trace();
   });

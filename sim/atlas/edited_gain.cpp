@@ -8,7 +8,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kEditSettledS = 60.0;
+constexpr double kGainSettledS = 60.0;
 
 /// A kernel whose gain leaves attitude and gyro bias alone: what is done to keep a filter from
 /// learning what it cannot know.
@@ -78,7 +78,7 @@ Scene turning_drive() {
 }
 
 double error_over_claim_of_all(WatchedFilter& filter, const RecordedTrial& trial) {
-  return errors_after(filter, trial, kEditSettledS).sigma_ratio();
+  return errors_after(filter, trial, kGainSettledS).sigma_ratio();
 }
 
 std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {

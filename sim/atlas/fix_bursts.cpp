@@ -9,16 +9,16 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kBurstS = 10.0;
-constexpr double kContinuousS = 120.0;  // of continuous fixes at first
+constexpr double kBurstsSettledS = 120.0;  // of continuous fixes at first
 constexpr int kGaps = 4;
 
 /// Ten seconds of fixes, then minutes of none, four times.
 Scene bursts(double gap_s) {
   Scene scene;
   scene.name = "bursts of fixes";
-  scene.duration_s = kContinuousS + kGaps * (gap_s + kBurstS);
+  scene.duration_s = kBurstsSettledS + kGaps * (gap_s + kBurstS);
   for (int k = 0; k < kGaps; ++k) {
-    scene.gnss.outages.push_back({kContinuousS + k * (gap_s + kBurstS), gap_s});
+    scene.gnss.outages.push_back({kBurstsSettledS + k * (gap_s + kBurstS), gap_s});
   }
   scene.trajectory = circle({.duration_s = scene.duration_s});
   scene.imu_rate_hz = 20.0;

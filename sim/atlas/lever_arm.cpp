@@ -5,7 +5,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kSpinSettledS = 20.0;
+constexpr double kSpunUpS = 20.0;
 constexpr double kSpinFixM = 0.02;
 
 /// A vehicle that turns once in 6 s, its antenna 2 m ahead of the IMU and 1 m above.
@@ -26,7 +26,7 @@ Scene spinning(double duration_s) {
 }
 
 double settled_error_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  return errors_after(filter, trial, kSpinSettledS).position_rms_m();
+  return errors_after(filter, trial, kSpunUpS).position_rms_m();
 }
 
 std::vector<AtlasCell> run_lever_arm(const AtlasOptions& options) {

@@ -9,7 +9,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kNoiseRateHz = 1000.0;
+constexpr double kStillRateHz = 1000.0;
 constexpr double kDurationS = 20.0;
 
 /// White noise alone, 0.3 deg/sqrt(h); biases so small that they add nothing.
@@ -83,7 +83,7 @@ AtlasCell cell_of(const AtlasColumn& column, const Trajectory& rest,
 
 std::vector<AtlasCell> run_lost_noise(const AtlasOptions& options) {
   const Trajectory rest = static_trajectory({.duration_s = kDurationS});
-  const auto imu = true_increments(rest, kNoiseRateHz, kDurationS);
+  const auto imu = true_increments(rest, kStillRateHz, kDurationS);
   std::vector<AtlasCell> cells;
   for (const Variant& variant : variants_by_interval()) {
     cells.push_back(cell_of(column_of(variant), rest, imu, options.brief ? 2 : 6));

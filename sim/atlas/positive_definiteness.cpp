@@ -6,7 +6,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kVaguePriorM = 1000.0;
-constexpr double kSharpFixM = 0.01;
+constexpr double kPreciseFixM = 0.01;
 constexpr double kVagueSettledS = 30.0;
 
 /// At rest. The first fix shrinks the variance of the position by 1e10, which float has no digits
@@ -18,7 +18,7 @@ Scene kilometre_prior() {
   scene.trajectory = static_trajectory({.duration_s = scene.duration_s});
   scene.imu_rate_hz = 20.0;
   set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.gnss.errors.position_sigma_n_m.setConstant(kSharpFixM);
+  scene.gnss.errors.position_sigma_n_m.setConstant(kPreciseFixM);
   scene.filter.gnss_correlation_s = 0.0;
   scene.initial = InitialSigma{
       .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kVaguePriorM};
@@ -26,7 +26,7 @@ Scene kilometre_prior() {
 }
 
 double settled_error_over_fix(WatchedFilter& filter, const RecordedTrial& trial) {
-  return errors_after(filter, trial, kVagueSettledS).position_rms_m() / kSharpFixM;
+  return errors_after(filter, trial, kVagueSettledS).position_rms_m() / kPreciseFixM;
 }
 
 std::vector<AtlasCell> run_positive_definiteness(const AtlasOptions& options) {

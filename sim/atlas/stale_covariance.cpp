@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSettleS = 300.0;
 constexpr double kCoastS = 3600.0;
-constexpr double kLateFixM = 1.0;
+constexpr double kStaleFixM = 1.0;
 
 /// Five minutes of fixes, an hour of none, then 20 fixes.
 Scene hour_without_fixes() {
@@ -25,11 +25,11 @@ Scene hour_without_fixes() {
                              .duration_s = scene.duration_s});
   scene.imu_rate_hz = 10.0;
   set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kHigh));
-  scene.gnss.errors.position_sigma_n_m.setConstant(kLateFixM);
+  scene.gnss.errors.position_sigma_n_m.setConstant(kStaleFixM);
   scene.gnss.outages = {{kSettleS, kCoastS}};
   scene.filter.gnss_correlation_s = 0.0;
   scene.initial = InitialSigma{
-      .tilt_rad = 1e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = kLateFixM};
+      .tilt_rad = 1e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = kStaleFixM};
   return scene;
 }
 

@@ -9,7 +9,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kHeightErrorM = 0.1;
-constexpr double kHeightRateHz = 10.0;
+constexpr double kVerticalRateHz = 10.0;
 
 ErrorVector height_error(const Trajectory& trajectory) {
   ErrorVector x = ErrorVector::Zero();
@@ -33,7 +33,7 @@ std::vector<AtlasCell> run_vertical_channel(const AtlasOptions& /*options*/) {
   for (const double minutes : {5.0, 30.0}) {
     const double duration_s = 60.0 * minutes;
     const Trajectory rest = static_trajectory({.duration_s = duration_s});
-    const LinearResponse response(rest, kHeightRateHz, duration_s, {height_error(rest)});
+    const LinearResponse response(rest, kVerticalRateHz, duration_s, {height_error(rest)});
     const Eigen::Vector3d axis_e = down_e_at(response.start().nav.r_e_m);
     const std::string condition = std::to_string(std::lround(minutes)) + " min";
     const double truth_m = height_sigma_m(response.truth(), axis_e);
