@@ -58,7 +58,7 @@ AtlasColumn edited_column(const std::string& name) {
 
 /// What the library offers for it: a Schmidt update.
 AtlasColumn held_column() {
-  return {AtlasGroup::kEkf, "Ekf, heading held",
+  return {AtlasGroup::kEkf, "Ekf with heading held",
           [](const EkfConfig& config, const TrialStart& start) {
             return watched(Ekf(config, start.estimate, start.P), {.held = Held::kHeadingAndTurn});
           }};
@@ -78,11 +78,7 @@ Scene turning_drive() {
 }
 
 double error_over_claim_of_all(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kGainSettledS) sums.add(truth, now);
-  });
-  return sums.sigma_ratio();
+  return errors_after(filter, trial, kGainSettledS).sigma_ratio();
 }
 
 std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {
@@ -90,8 +86,8 @@ std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {
   std::vector<AtlasColumn> columns = few_atlas_columns();
   std::erase_if(columns, [](const AtlasColumn& c) { return c.group == AtlasGroup::kReset; });
   columns.push_back(held_column());
-  columns.push_back(edited_column<UpdateForm::kJoseph>("gain edited, Joseph's form"));
-  columns.push_back(edited_column<UpdateForm::kSimple>("gain edited, short form"));
+  columns.push_back(edited_column<UpdateForm::kJoseph>("edited gain in Joseph's form"));
+  columns.push_back(edited_column<UpdateForm::kSimple>("edited gain in the short form"));
   return scored(columns, scene.filter, recorded_trials(scene, options.brief ? 4 : 20), {},
                 error_over_claim_of_all);
 }

@@ -30,11 +30,7 @@ void add_shock(RecordedTrial& trial) {
 }
 
 double error_afterwards_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kRecoveredS) sums.add(truth, now);
-  });
-  return sums.horizontal_rms_m();
+  return errors_after(filter, trial, kRecoveredS).horizontal_rms_m();
 }
 
 std::vector<AtlasCell> run_gate_lockout(const AtlasOptions& options) {

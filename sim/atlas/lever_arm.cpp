@@ -26,11 +26,7 @@ Scene spinning(double duration_s) {
 }
 
 double settled_error_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kSpunUpS) sums.add(truth, now);
-  });
-  return sums.position_rms_m();
+  return errors_after(filter, trial, kSpunUpS).position_rms_m();
 }
 
 std::vector<AtlasCell> run_lever_arm(const AtlasOptions& options) {

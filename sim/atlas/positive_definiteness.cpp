@@ -26,11 +26,7 @@ Scene kilometre_prior() {
 }
 
 double settled_error_over_fix(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-    if (to_seconds(truth.nav.time) > kVagueSettledS) sums.add(truth, now);
-  });
-  return sums.position_rms_m() / kPreciseFixM;
+  return errors_after(filter, trial, kVagueSettledS).position_rms_m() / kPreciseFixM;
 }
 
 std::vector<AtlasCell> run_positive_definiteness(const AtlasOptions& options) {

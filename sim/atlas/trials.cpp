@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNoFigure = std::numeric_limits<double>::infinity();
 
-double root_mean(double sum, double epochs) { return std::sqrt(sum / epochs); }
+double root_of_mean(double sum, double epochs) { return std::sqrt(sum / epochs); }
 
 /// The names that both have.
 Reports common(const Reports& a, const Reports& b) {
@@ -31,7 +31,7 @@ AtlasCell scored_column(const AtlasColumn& column, const EkfConfig& believed,
     outcomes.emplace_back(figure, filter->reported());
     cell.figure += figure * figure;
   }
-  cell.figure = root_mean(cell.figure, static_cast<double>(trials.size()));
+  cell.figure = root_of_mean(cell.figure, static_cast<double>(trials.size()));
   // Rounding must not leave out trials that are all alike.
   const double bad = cell.figure * (1.0 - 1e-9);
   std::optional<Reports> reports;
@@ -95,16 +95,24 @@ void ErrorSums::add(const Estimate& truth, const WatchedFilter& filter) {
 }
 
 double ErrorSums::position_rms_m() const {
-  return finite ? root_mean(position_m2, epochs) : kNoFigure;
+  return finite ? root_of_mean(position_m2, epochs) : kNoFigure;
 }
 
 double ErrorSums::horizontal_rms_m() const {
-  return finite ? root_mean(horizontal_m2, epochs) : kNoFigure;
+  return finite ? root_of_mean(horizontal_m2, epochs) : kNoFigure;
 }
 
 double ErrorSums::sigma_ratio() const {
-  const double ratio = root_mean(nees, kErrorStates * epochs);
+  const double ratio = root_of_mean(nees, kErrorStates * epochs);
   return finite && std::isfinite(ratio) ? ratio : kNoFigure;
+}
+
+ErrorSums errors_after(WatchedFilter& filter, const RecordedTrial& trial, double from_s) {
+  ErrorSums sums;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    if (to_seconds(truth.nav.time) > from_s) sums.add(truth, now);
+  });
+  return sums;
 }
 
 double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {

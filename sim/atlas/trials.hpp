@@ -44,6 +44,9 @@ struct ErrorSums {
   double sigma_ratio() const;       ///< sqrt(NEES / 15): errors over claims; infinite without
 };
 
+/// Runs the filter over the whole trial. @returns the errors before fixes later than from_s
+ErrorSums errors_after(WatchedFilter& filter, const RecordedTrial& trial, double from_s);
+
 /// A figure: heading error over its claimed sigma just before the last fix. Infinite without an
 /// estimate or a claim.
 double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& trial);

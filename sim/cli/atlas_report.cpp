@@ -79,17 +79,50 @@ std::string markdown_matrix(const std::vector<sim::AtlasResult>& results) {
   return text;
 }
 
+/// Each once, in the order of the cells.
+std::vector<std::string> each_once(const sim::AtlasResult& result,
+                                   std::string sim::AtlasCell::*member) {
+  std::vector<std::string> names;
+  for (const sim::AtlasCell& cell : result.cells) {
+    if (std::find(names.begin(), names.end(), cell.*member) == names.end()) {
+      names.push_back(cell.*member);
+    }
+  }
+  return names;
+}
+
+/// "fails 7.3 (NIS high)"; nothing where there is no such cell.
+std::string markdown_cell(const sim::AtlasResult& result, const std::string& variant,
+                          const std::string& condition) {
+  for (const sim::AtlasCell& cell : result.cells) {
+    if (cell.variant != variant || cell.condition != condition) continue;
+    const std::string reported = reported_text(result.scene, cell);
+    return fmt::format("{} {}{}", verdict_text(result.scene, cell), with_unit(cell.figure, ""),
+                       reported.empty() ? "" : " (" + reported + ")");
+  }
+  return "";
+}
+
+/// Variants by conditions.
 std::string markdown_scene(const sim::AtlasResult& result) {
   const sim::AtlasScene& scene = result.scene;
-  std::string text = fmt::format(
-      "\n## {}\n\n`{}`, [{}.md](atlas/{}.md). Figure: {}; {}.\n\n| of | variant | condition | {} | "
-      "verdict | reported |\n|---|---|---|---|---|---|\n",
-      scene.title, scene.key, scene.key, scene.key, scene.figure, limits_text(scene),
-      figure_heading(scene));
-  for (const sim::AtlasCell& cell : result.cells) {
-    text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", sim::name(cell.group), cell.variant,
-                        cell.condition, with_unit(cell.figure, ""), verdict_text(scene, cell),
-                        reported_text(scene, cell));
+  const auto conditions = each_once(result, &sim::AtlasCell::condition);
+  std::string text = fmt::format("\n## {}\n\n`{}`, [{}.md](atlas/{}.md). Figure: {}{}; {}.\n\n",
+                                 scene.title, scene.key, scene.key, scene.key, scene.figure,
+                                 scene.unit.empty() ? "" : ", " + scene.unit, limits_text(scene));
+  std::string rule = "|---|";
+  text += "| variant |";
+  for (const std::string& condition : conditions) {
+    text += fmt::format(" {} |", condition);
+    rule += "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const std::string& variant : each_once(result, &sim::AtlasCell::variant)) {
+    text += fmt::format("| {} |", variant);
+    for (const std::string& condition : conditions) {
+      text += fmt::format(" {} |", markdown_cell(result, variant, condition));
+    }
+    text += "\n";
   }
   return text;
 }
@@ -172,7 +205,7 @@ std::string atlas_markdown(const std::vector<sim::AtlasResult>& results) {
       "A figure is the larger the worse. In the matrix: the worst of each group of variants. "
       "*Not offered* are\nmethods that the library does not have: they are what a scene shows "
       "failing. Every variant that the library offers and that fails is reported by\none of its "
-      "detectors (last column of a scene's table).\n\n";
+      "detectors, in brackets.\n\n";
   text += markdown_matrix(results);
   for (const sim::AtlasResult& result : results) text += markdown_scene(result);
   return text;

@@ -194,6 +194,22 @@ TEST_CASE("propagate over one increment without Phi is advance and propagate") {
   }
 }
 
+TEST_CASE_TEMPLATE("a variance of almost nothing is propagated as such", Kernel, UdKernel<float>,
+                   SquareRootKernel<float>) {
+  // Two biases alone: the other elements of D are what rounding leaves, some of them so small that
+  // their inverse is no number.
+  ErrorMatrix P = ErrorMatrix::Zero();
+  P(kBa, kBa) = P(kBa + 1, kBa + 1) = 1e-8;
+  Kernel kernel(P);
+  for (int k = 0; k < 100; ++k) {
+    Transition Phi;
+    advance(Phi, test::random_dynamics(1, 0.1, std::numeric_limits<double>::infinity()));
+    kernel.propagate(Phi, ProcessNoise{});
+  }
+  CHECK(kernel.matrix().allFinite());
+  CHECK(std::abs(kernel.matrix()(kBa, kBa) - 1e-8) < 1e-12);  // a thousand roundings of 6e-8
+}
+
 TEST_CASE("precise fixes on a vague prior, in float") {
   const VaguePrior simple = from_vague_prior<DenseKernel<float>, UpdateForm::kSimple>(1e3, 0.1);
   CHECK(simple.first_indefinite_row > 0);

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 
 #include "filters/random_state.hpp"
@@ -131,6 +133,38 @@ TEST_CASE("a fix without numbers changes nothing") {
   filter.update(GnssFix{});
   CHECK(filter.covariance() == P);
   CHECK(filter.estimate().nav.r_e_m == at.nav.r_e_m);
+}
+
+TEST_CASE_TEMPLATE("the NIS of a fix is that of Ekf", Kernel, DenseKernel<double>,
+                   SymmetricKernel<double>, UdKernel<double>, SquareRootKernel<double>) {
+  const Estimate at = test::at_equator();
+  const EkfConfig config = plain_config(0.1);
+  const ErrorMatrix P = initial_covariance(at, {0.01, 0.02, 0.1, 2.5}, config.imu);
+  GnssFix fix;
+  fix.time = at.nav.time;
+  fix.position = {at.nav.r_e_m + Eigen::Vector3d(3.0, -2.0, 5.0),
+                  4.0 * Eigen::Matrix3d::Identity()};
+  fix.velocity = {at.nav.v_e_mps + Eigen::Vector3d(0.1, 0.2, -0.1),
+                  0.01 * Eigen::Matrix3d::Identity()};
+  const UpdateReport expected = Ekf(config, at, P).update(fix);
+  KernelEkf filter(config, at, Kernel(P));
+  const FusedFix fused = filter.update(fix);
+  CHECK(fused.dof == expected.dof);
+  CHECK(std::abs(fused.nis - expected.nis) < 1e-9 * expected.nis);  // rounding
+}
+
+TEST_CASE("process noise below half a unit in the last place is lost, and said to be") {
+  const Estimate at = test::at_equator();
+  EkfConfig config = plain_config(0.0);
+  const ErrorMatrix P = initial_covariance(at, {1.0, 1.0, 0.1, 2.5}, config.imu);
+  const ImuIncrement inc{at.nav.time + std::chrono::milliseconds(1), 1e-3};
+  KernelEkf single(config, at, SymmetricKernel<float>(P));
+  single.predict(inc);
+  // (0.3 deg/sqrt(h))^2 * 0.5 ms = 4e-12 on a variance of 1: float has no digit for it.
+  CHECK(single.noise_rounding() == 1.0);
+  KernelEkf twice(config, at, SymmetricKernel<double>(P));
+  twice.predict(inc);
+  CHECK(twice.noise_rounding() < 1e-3);
 }
 
 TEST_CASE("an invalid configuration is refused by the field's name") {
