@@ -36,9 +36,9 @@ struct GnssFix {
   std::optional<GnssVelocity> velocity{};
 };
 
-/// The least standard deviation of a measurement, m or m/s, a thousandth of what any sensor claims:
-/// below it, squares and their inverses run out of range.
-inline constexpr double kLeastSigma = 1e-9;
+/// The least standard deviation of a measurement, m or m/s, far below what any sensor claims: below
+/// it, squares and their inverses run out of range.
+inline constexpr double kLeastSigma = 1e-12;
 
 /// True when the fix has a part, all numbers are finite, the position is within 100 km of the
 /// ellipsoid's surface, and every covariance is symmetric and positive definite, with at least

@@ -19,8 +19,8 @@ using test::near;
 /// Errors far below rounding: the fix is the truth.
 GnssErrorModel exact_model() {
   GnssErrorModel model;
-  model.position_sigma_n_m.setConstant(1e-12);
-  model.velocity_sigma_n_mps.setConstant(1e-15);
+  model.position_sigma_n_m.setConstant(2e-12);
+  model.velocity_sigma_n_mps.setConstant(2e-12);
   return model;
 }
 
