@@ -48,7 +48,7 @@ FreeRun free_run(const NavState& start, const Increments& increments, const Stra
   ImuHistory history;
   const StrapdownFunction step = strapdown_function(policy);
   for (std::size_t k = 0; k < increments.size(); ++k) {
-    const ImuIncrement inc = increments[k];
+    const ImuIncrement& inc = increments[k];
     step(run.nav, inc, history);
     run.nav.time = inc.time;
     watched.push(inc);

@@ -88,6 +88,7 @@ function madeBy(report: Report): HTMLElement {
 function seedsOf({ input, command }: Report): string {
   const trials = input["trials"];
   const first = input["first_seed"] ?? input["seed"];
+  if (command === "atlas") return "1 and on, as many as a scene has trials";
   if (typeof first !== "number") return "none: nothing is random here";
   if (command === "analyze") return "none: a covariance analysis draws no random numbers";
   if (typeof trials !== "number" || input["seed"] !== undefined) return String(first);
