@@ -13,7 +13,7 @@ namespace leeway::cli {
 namespace {
 
 constexpr double kRareProbability = 1e-3;  // of an honest filter found inconsistent
-constexpr int kMostSearches = 5;
+constexpr int kMostSearches = 7;
 constexpr double kSearchTolerance = 0.02;  // of the limit; about the scatter of 200 trials
 
 /// Whether the mean of chi-square values, one a trial, is one that an honest filter may have.
@@ -65,25 +65,29 @@ class Confirmer {
     return r;
   }
 
-  /// Secants in log(error) over log(interval). @returns nothing when they do not close in.
-  std::optional<double> search(const sim::Interval& answer, const Run& first) {
-    if (std::abs(first.error_m() / answer.limit_m - 1.0) < kSearchTolerance) {
-      return answer.interval_s;
-    }
+  /// Secants in log(error) over log(interval) between an interval that keeps the limit and one that
+  /// does not. @returns the longest found that keeps it in the trials; nothing without one.
+  std::optional<double> search(const sim::Interval& answer, Run here) {
+    std::optional<double> kept;  // logarithms of intervals, s
+    std::optional<double> lost;
+    double log_s = std::log(answer.interval_s);
     double slope = 1.0;
-    double before_log_s = std::log(answer.interval_s);
-    double before_log_m = std::log(first.error_m());
     for (int i = 0; i < kMostSearches; ++i) {
-      const double step = (std::log(answer.limit_m) - before_log_m) / slope;
-      const double log_s = before_log_s + std::clamp(step, -1.5, 1.5);
-      if (std::exp(log_s) > 0.5 * scene_.duration_s || !std::isfinite(log_s)) return {};
-      const double error_m = run(std::exp(log_s)).error_m();
-      if (std::abs(error_m / answer.limit_m - 1.0) < kSearchTolerance) return std::exp(log_s);
-      slope = std::clamp((std::log(error_m) - before_log_m) / (log_s - before_log_s), 0.3, 5.0);
-      before_log_s = log_s;
-      before_log_m = std::log(error_m);
+      const double excess = std::log(here.error_m() / answer.limit_m);
+      const bool diverges = here.campaign.diverged > 0 || !std::isfinite(excess);
+      if (!diverges && std::abs(excess) < kSearchTolerance) return std::exp(log_s);
+      (diverges || excess > 0.0 ? lost : kept) = log_s;
+      // Of an error that is that of lost filters no secant can be drawn.
+      double next = log_s - (diverges ? std::log(2.0) : std::clamp(excess / slope, -1.5, 1.5));
+      if (kept && lost && !(next > *kept && next < *lost)) next = 0.5 * (*kept + *lost);
+      if (std::exp(next) > 0.5 * scene_.duration_s) break;
+      here = run(std::exp(next));
+      const double moved = std::log(here.error_m() / answer.limit_m) - excess;
+      slope = diverges ? 1.0 : std::clamp(moved / (next - log_s), 0.3, 5.0);
+      log_s = next;
     }
-    return {};
+    if (!kept) return {};
+    return std::exp(*kept);
   }
 
   sim::Scene scene_;

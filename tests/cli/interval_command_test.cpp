@@ -91,6 +91,22 @@ TEST_CASE("interval: an EKF that is not consistent is said not to be" *
   CHECK(row.at("consistent") == false);
 }
 
+TEST_CASE(
+    "interval: where trials are lost at the answer, a shorter one is found that keeps the limit" *
+    doctest::test_suite("heavy")) {
+  // 2026-11-28: the search drew secants through errors of lost filters, and found nothing.
+  const auto row = leeway("interval" + scene("town-car.toml") +
+                          "--imu automotive-mems --limit 10 --at 900 --confirm 6 --json")
+                       .json()
+                       .at("results")
+                       .at(0);
+  REQUIRE(row.at("confirm").at("diverged") > 0);
+  const auto& found_s = row.at("confirm").at("monte_carlo_interval_s");
+  REQUIRE(found_s.is_number());
+  CHECK(found_s > 1.0);  // fixes every second keep it by far
+  CHECK(found_s < row.at("interval_s"));
+}
+
 TEST_CASE("interval prints one table, the paper's conclusion and what the step costs" *
           doctest::test_suite("heavy")) {
   const Outcome outcome = leeway("interval" + scene("town-car.toml"));
