@@ -3,22 +3,27 @@
 #include <doctest/doctest.h>
 
 #include <limits>
-#include <tuple>
 
 namespace leeway {
 
 // 300 degrees of freedom: chi-square is beyond 300 +- 3.7 sqrt(600) with 1e-4 on either side.
 TEST_CASE("NIS monitor: within, above and below what chi-square allows") {
-  for (const auto& [ratio, high, low] : {std::tuple{1.0, false, false},
-                                         {1.25, false, false},
-                                         {1.4, true, false},
-                                         {0.8, false, false},
-                                         {0.6, false, true}}) {
-    CAPTURE(ratio);
+  struct Case {
+    double ratio;
+    bool high;
+    bool low;
+  };
+  const Case cases[] = {{1.0, false, false},
+                        {1.25, false, false},
+                        {1.4, true, false},
+                        {0.8, false, false},
+                        {0.6, false, true}};
+  for (const Case& c : cases) {
+    CAPTURE(c.ratio);
     NisMonitor monitor;
-    for (int k = 0; k < 100; ++k) monitor.note(3.0 * ratio, 3);
-    CHECK(monitor.is_high() == high);
-    CHECK(monitor.is_low() == low);
+    for (int k = 0; k < 100; ++k) monitor.note(3.0 * c.ratio, 3);
+    CHECK(monitor.is_high() == c.high);
+    CHECK(monitor.is_low() == c.low);
   }
 }
 
