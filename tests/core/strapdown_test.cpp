@@ -215,8 +215,8 @@ TEST_CASE("a step reports the mean attitude and the force integral in Earth axes
   const AnalyticMotion motion = test::rough_drive();
   constexpr Duration kStep{10'000'000};
   // Of 0.1 m/s and 3 mrad in a step: Euler takes the attitude of the start, half a turn too early;
-  // the others miss h^3, two-sample h^4, sculling alone that and the turn that coning adds, 1e-7 of
-  // the force. RK4 reports the trapezoid.
+  // the others miss h^3, two-sample h^4, sculling alone that and what coning would turn,
+  // 1e-7 m/s. RK4 reports the trapezoid.
   const std::array kForceTolerance_mps{5e-4, 5e-4, 1e-5, 1e-5, 5e-7, 1e-5, 1e-5, 1e-6};
   const std::array kAttitudeTolerance{5e-3, 5e-3, 4e-5, 4e-5, 4e-5, 4e-5, 4e-5, 4e-5};
   static_assert(kForceTolerance_mps.size() == kSchemes.size());
