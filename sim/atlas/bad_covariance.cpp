@@ -30,16 +30,7 @@ std::vector<BadCovariance> bad_covariances() {
 }
 
 Scene short_drive() {
-  Scene scene;
-  scene.name = "one bad covariance";
-  scene.duration_s = 30.0;
-  scene.trajectory = circle({.duration_s = scene.duration_s});
-  scene.imu_rate_hz = 20.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
-  return scene;
+  return car_grade_scene("one bad covariance", circle({.duration_s = 30.0}), 30.0, 20.0);
 }
 
 /// The same drive, its last fix with this covariance and far away.

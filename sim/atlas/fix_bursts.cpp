@@ -14,18 +14,12 @@ constexpr int kGaps = 4;
 
 /// Ten seconds of fixes, then minutes of none, four times.
 Scene bursts(double gap_s) {
-  Scene scene;
-  scene.name = "bursts of fixes";
-  scene.duration_s = kBurstsSettledS + kGaps * (gap_s + kBurstS);
+  const double duration_s = kBurstsSettledS + kGaps * (gap_s + kBurstS);
+  Scene scene =
+      car_grade_scene("bursts of fixes", circle({.duration_s = duration_s}), duration_s, 20.0);
   for (int k = 0; k < kGaps; ++k) {
     scene.gnss.outages.push_back({kBurstsSettledS + k * (gap_s + kBurstS), gap_s});
   }
-  scene.trajectory = circle({.duration_s = scene.duration_s});
-  scene.imu_rate_hz = 20.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
   return scene;
 }
 

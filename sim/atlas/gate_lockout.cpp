@@ -10,16 +10,8 @@ constexpr double kShockMps2 = 50.0;    // .. the accelerometers read so much too
 constexpr double kRecoveredS = 120.0;  // when the filter should be right again
 
 Scene drive_with_shock() {
-  Scene scene;
-  scene.name = "a shock that the accelerometers take for motion";
-  scene.duration_s = 150.0;
-  scene.trajectory = circle({.duration_s = scene.duration_s});
-  scene.imu_rate_hz = 50.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
-  return scene;
+  return car_grade_scene("a shock that the accelerometers take for motion",
+                         circle({.duration_s = 150.0}), 150.0, 50.0);
 }
 
 void add_shock(RecordedTrial& trial) {

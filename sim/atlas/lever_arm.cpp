@@ -10,18 +10,13 @@ constexpr double kSpinFixM = 0.02;
 
 /// A vehicle that turns once in 6 s, its antenna 2 m ahead of the IMU and 1 m above.
 Scene spinning(double duration_s) {
-  Scene scene;
-  scene.name = "spinning with a lever arm";
-  scene.duration_s = duration_s;
-  scene.trajectory = circle({.radius_m = 5.0, .speed_mps = 5.0, .duration_s = duration_s});
-  scene.imu_rate_hz = 50.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
+  Scene scene = car_grade_scene(
+      "spinning with a lever arm",
+      circle({.radius_m = 5.0, .speed_mps = 5.0, .duration_s = duration_s}), duration_s, 50.0,
+      {.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 0.1});
   scene.gnss.errors.position_sigma_n_m.setConstant(kSpinFixM);
   scene.gnss.errors.lever_arm_b_m = {2.0, 0.0, -1.0};
-  scene.filter.gnss_correlation_s = 0.0;
   scene.filter.lever_arm_b_m = scene.gnss.errors.lever_arm_b_m;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 0.1};
   return scene;
 }
 

@@ -6,17 +6,14 @@ namespace leeway::sim {
 namespace {
 
 Scene parked(double duration_s) {
-  Scene scene;
-  scene.name = "parked with RTK fixes";
-  scene.duration_s = duration_s;
-  scene.trajectory = static_trajectory({.duration_s = duration_s});
-  scene.imu_rate_hz = 5.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
+  Scene scene = car_grade_scene("parked with RTK fixes",
+                                static_trajectory({.duration_s = duration_s}), duration_s, 5.0,
+                                {.tilt_rad = 0.03,
+                                 .heading_rad = 10.0 * kRadPerDeg,
+                                 .velocity_mps = 0.05,
+                                 .position_m = 0.1});
   scene.gnss.errors.position_sigma_n_m.setConstant(0.01);
   scene.gnss.errors.velocity_sigma_n_mps.setConstant(0.01);
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial = InitialSigma{
-      .tilt_rad = 0.03, .heading_rad = 10.0 * kRadPerDeg, .velocity_mps = 0.05, .position_m = 0.1};
   return scene;
 }
 

@@ -12,16 +12,10 @@ constexpr double kVagueSettledS = 30.0;
 /// At rest. The first fix shrinks the variance of the position by 1e10, which float has no digits
 /// for.
 Scene kilometre_prior() {
-  Scene scene;
-  scene.name = "kilometre prior, centimetre fix";
-  scene.duration_s = 60.0;
-  scene.trajectory = static_trajectory({.duration_s = scene.duration_s});
-  scene.imu_rate_hz = 20.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
+  Scene scene = car_grade_scene(
+      "kilometre prior, centimetre fix", static_trajectory({.duration_s = 60.0}), 60.0, 20.0,
+      {.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kVaguePriorM});
   scene.gnss.errors.position_sigma_n_m.setConstant(kPreciseFixM);
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial = InitialSigma{
-      .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kVaguePriorM};
   return scene;
 }
 

@@ -45,6 +45,19 @@ AtlasCell scored_column(const AtlasColumn& column, const EkfConfig& believed,
 
 }  // namespace
 
+Scene car_grade_scene(const std::string& name, const Trajectory& trajectory, double duration_s,
+                      double imu_rate_hz, const InitialSigma& initial) {
+  Scene scene;
+  scene.name = name;
+  scene.trajectory = trajectory;
+  scene.duration_s = duration_s;
+  scene.imu_rate_hz = imu_rate_hz;
+  set_imu(scene, "automotive-mems", automotive_mems_model());
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial = initial;
+  return scene;
+}
+
 std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n) {
   const TrialPlan plan(scene, scene.duration_s, 1);
   std::vector<RecordedTrial> trials;

@@ -12,6 +12,13 @@
 
 namespace leeway::sim {
 
+/// A car-grade IMU on a trajectory, and a filter that takes fixes for what they are: white.
+/// @param initial  1 sigma at the start; by default that of a car that has just been aligned
+Scene car_grade_scene(
+    const std::string& name, const Trajectory& trajectory, double duration_s, double imu_rate_hz,
+    const InitialSigma& initial = {
+        .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5});
+
 /// Trials of a scene, seeds 1 to n, with the truth at every fix.
 std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n);
 

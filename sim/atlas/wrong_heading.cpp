@@ -12,16 +12,9 @@ constexpr double kUniformSigmaRad = 1.81;  // of a heading that is anywhere: pi 
 constexpr double kScoredLastS = 20.0;
 
 Scene town_drive() {
-  Scene scene;
-  scene.name = "heading unknown";
-  scene.duration_s = 120.0;
-  scene.trajectory = car_drive({.initial_rest_s = 2.0, .duration_s = scene.duration_s});
-  scene.imu_rate_hz = 25.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.03, .heading_rad = 1e-3, .velocity_mps = 0.1, .position_m = 2.5};
-  return scene;
+  return car_grade_scene(
+      "heading unknown", car_drive({.initial_rest_s = 2.0, .duration_s = 120.0}), 120.0, 25.0,
+      {.tilt_rad = 0.03, .heading_rad = 1e-3, .velocity_mps = 0.1, .position_m = 2.5});
 }
 
 /// The trial begun with a heading that is off by so much, and said to be anywhere.
