@@ -3,11 +3,11 @@
 // horizontal, 95 %. ROLL PITCH YAW: the mount, deg (docs/conventions.md).
 #include <algorithm>
 #include <cstdio>
-#include <leeway/error.hpp>
-#include <leeway/filters/navigator.hpp>
-#include <leeway/gnss_log.hpp>
-#include <leeway/imu_log.hpp>
-#include <leeway/truth_log.hpp>
+#include <leeway/earth/error.hpp>
+#include <leeway/logs/gnss_log.hpp>
+#include <leeway/logs/imu_log.hpp>
+#include <leeway/logs/truth_log.hpp>
+#include <leeway/navigator/navigator.hpp>
 #include <string>
 #include <vector>
 

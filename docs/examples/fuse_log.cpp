@@ -1,11 +1,11 @@
 // Fuses a recorded IMU and GNSS log into a navigation solution, through the library alone.
 // usage: fuse_log IMU GNSS SOLUTION.csv
 #include <cstdio>
-#include <leeway/error.hpp>
-#include <leeway/filters/navigator.hpp>
-#include <leeway/gnss_log.hpp>
-#include <leeway/imu_log.hpp>
-#include <leeway/solution_writer.hpp>
+#include <leeway/earth/error.hpp>
+#include <leeway/logs/gnss_log.hpp>
+#include <leeway/logs/imu_log.hpp>
+#include <leeway/logs/solution_writer.hpp>
+#include <leeway/navigator/navigator.hpp>
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <leeway/filters/navigator.hpp>
+#include <leeway/navigator/navigator.hpp>
 #include <sstream>
 #include <string>
 

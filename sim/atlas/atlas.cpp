@@ -1,13 +1,13 @@
-#include "leeway/sim/atlas.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "../closest_name.hpp"
-#include "leeway/error.hpp"
-#include "leeway/sim/parallel.hpp"
-#include "scenes.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/sim/tools/parallel.hpp"
+#include "sim/atlas/scenes.hpp"
+#include "sim/tools/closest_name.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -1,14 +1,14 @@
-#include "crossing.hpp"
+#include "sim/atlas/crossing.hpp"
 
 #include <cmath>
 
-#include "free_run.hpp"
-#include "leeway/imu_class.hpp"
-#include "leeway/sim/imu_simulator.hpp"
-#include "leeway/sim/variant.hpp"
-#include "leeway/sim/waypoints.hpp"
-#include "ned_mechanization.hpp"
-#include "trials.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/compare/variant.hpp"
+#include "leeway/sim/motion/waypoints.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
+#include "sim/atlas/free_run.hpp"
+#include "sim/atlas/ned_mechanization.hpp"
+#include "sim/atlas/trials.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "leeway/sim/atlas.hpp"
-#include "leeway/sim/scene.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
+#include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::sim {
 

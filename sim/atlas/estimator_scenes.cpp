@@ -1,6 +1,6 @@
-#include "estimator_scenes.hpp"
+#include "sim/atlas/estimator_scenes.hpp"
 
-#include "scenes.hpp"
+#include "sim/atlas/scenes.hpp"
 
 namespace leeway::sim {
 

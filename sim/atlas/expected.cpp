@@ -6,9 +6,9 @@
 #include <map>
 #include <string_view>
 
-#include "committed_verdicts.hpp"
-#include "leeway/error.hpp"
-#include "leeway/sim/atlas_expected.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/sim/atlas/atlas_expected.hpp"
+#include "sim/atlas/committed_verdicts.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -1,7 +1,7 @@
-#include "free_run.hpp"
+#include "sim/atlas/free_run.hpp"
 
-#include "leeway/earth.hpp"
-#include "leeway/rotation.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/earth/rotation.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <string>
 
-#include "leeway/integration_monitor.hpp"
-#include "leeway/sim/trajectory.hpp"
-#include "leeway/strapdown.hpp"
+#include "leeway/sim/motion/trajectory.hpp"
+#include "leeway/strapdown/integration_monitor.hpp"
+#include "leeway/strapdown/strapdown.hpp"
 
 namespace leeway::sim {
 

@@ -1,11 +1,11 @@
-#include "linear_response.hpp"
+#include "sim/atlas/linear_response.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "leeway/filters/inertial_part.hpp"
-#include "leeway/sim/imu_simulator.hpp"
+#include "leeway/ekf/inertial_estimate.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
 
 namespace leeway::sim {
 
@@ -17,7 +17,7 @@ LinearResponse::LinearResponse(const Trajectory& trajectory, double rate_hz, dou
 }
 
 Estimate LinearResponse::strapdown_from(const Estimate& start) const {
-  InertialPart inertial(EkfConfig{.imu = {}}, start);
+  InertialEstimate inertial(EkfConfig{.imu = {}}, start);
   for (const ImuIncrement& inc : imu_) inertial.advance(inc);
   return inertial.estimate();
 }

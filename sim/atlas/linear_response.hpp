@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "leeway/filters/error_state.hpp"
-#include "leeway/imu.hpp"
-#include "leeway/sim/trajectory.hpp"
-#include "watched_filter.hpp"
+#include "leeway/model/error_state.hpp"
+#include "leeway/sensors/imu.hpp"
+#include "leeway/sim/motion/trajectory.hpp"
+#include "sim/atlas/watched_filter.hpp"
 
 namespace leeway::sim {
 

@@ -1,6 +1,6 @@
-#include "mechanization_scenes.hpp"
+#include "sim/atlas/mechanization_scenes.hpp"
 
-#include "scenes.hpp"
+#include "sim/atlas/scenes.hpp"
 
 namespace leeway::sim {
 

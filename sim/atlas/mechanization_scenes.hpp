@@ -2,7 +2,7 @@
 /// The scenes that break mechanizations, clocks and sensors, one file each.
 #pragma once
 
-#include "leeway/sim/atlas.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 
 namespace leeway::sim {
 

@@ -1,8 +1,8 @@
-#include "ned_mechanization.hpp"
+#include "sim/atlas/ned_mechanization.hpp"
 
 #include <cmath>
 
-#include "leeway/rotation.hpp"
+#include "leeway/earth/rotation.hpp"
 
 namespace leeway::sim {
 namespace {

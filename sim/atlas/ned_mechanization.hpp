@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 
-#include "leeway/earth.hpp"
-#include "leeway/imu.hpp"
-#include "leeway/nav_state.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/sensors/imu.hpp"
+#include "leeway/strapdown/nav_state.hpp"
 
 namespace leeway::sim {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "leeway/sim/atlas.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 
 namespace leeway::sim {
 

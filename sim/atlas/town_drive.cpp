@@ -1,7 +1,7 @@
-#include "town_drive.hpp"
+#include "sim/atlas/town_drive.hpp"
 
-#include "leeway/imu_class.hpp"
-#include "leeway/sim/trajectories.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
 
 namespace leeway::sim {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "leeway/sim/atlas.hpp"
-#include "leeway/sim/scene.hpp"
-#include "trials.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
+#include "leeway/sim/scene/scene.hpp"
+#include "sim/atlas/trials.hpp"
 
 namespace leeway::sim {
 

@@ -1,4 +1,4 @@
-#include "trials.hpp"
+#include "sim/atlas/trials.hpp"
 
 #include <algorithm>
 #include <cmath>

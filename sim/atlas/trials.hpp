@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "../recorded_trial.hpp"
-#include "leeway/sim/scene.hpp"
-#include "watched_filter.hpp"
+#include "leeway/sim/scene/scene.hpp"
+#include "sim/atlas/watched_filter.hpp"
+#include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 

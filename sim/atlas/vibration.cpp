@@ -1,12 +1,12 @@
-#include "vibration.hpp"
+#include "sim/atlas/vibration.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <array>
 
-#include "free_run.hpp"
-#include "leeway/sim/increment_table.hpp"
-#include "leeway/sim/variant.hpp"
+#include "leeway/sim/compare/variant.hpp"
+#include "leeway/sim/sensors/true_increments.hpp"
+#include "sim/atlas/free_run.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -37,7 +37,7 @@ std::vector<AtlasCell> vibration_cells(
     const NavState start = truth_at(trajectory, 0.0).nav;
     const NavState truth = truth_at(trajectory, kVibrationS).nav;
     for (const double rate_hz : imu_rates_hz(options)) {
-      const IncrementTable increments(trajectory, rate_hz, kVibrationS, 1);
+      const TrueIncrements increments(trajectory, rate_hz, kVibrationS, 1);
       for (const Scheme scheme : kSchemes) {
         const FreeRun run = free_run(start, increments, {scheme});
         cells.push_back({AtlasGroup::kStrapdown, std::string(name(scheme)),

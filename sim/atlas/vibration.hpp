@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "leeway/sim/atlas.hpp"
-#include "leeway/sim/trajectory.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
+#include "leeway/sim/motion/trajectory.hpp"
 
 namespace leeway::sim {
 

@@ -1,11 +1,11 @@
-#include "watched_filter.hpp"
+#include "sim/atlas/watched_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "../visit_filter.hpp"
-#include "watched_kernel_ekf.hpp"
+#include "sim/atlas/watched_kernel_ekf.hpp"
+#include "sim/compare/variant_filter.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -31,9 +31,9 @@ class WatchedEkf final : public WatchedFilter {
   void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
 
   void update(const GnssFix& fix) override {
-    const UpdateReport report = filter_.update(fix, trust_);
-    if (report.outcome == UpdateReport::Outcome::kUnusable) return detectors_.note_unusable();
-    if (report.outcome == UpdateReport::Outcome::kGated) detectors_.note_gated();
+    const UpdateOutcome report = filter_.update(fix, trust_);
+    if (report.outcome == UpdateOutcome::Outcome::kUnusable) return detectors_.note_unusable();
+    if (report.outcome == UpdateOutcome::Outcome::kGated) detectors_.note_gated();
     detectors_.note_nis(report.nis, report.dof);
     detectors_.note(fix, filter_.estimate(), filter_.covariance());
   }
@@ -159,16 +159,16 @@ AtlasColumn column_of(const Variant& variant) {
   const std::string both = name(variant, 1.0);
   return {group_of(variant), both.substr(both.find(' ') + 1),
           [variant](const EkfConfig& config, const TrialStart& start) {
-            return visit_filter(variant, config, start,
-                                [&config](auto filter) -> std::unique_ptr<WatchedFilter> {
-                                  using Filter = decltype(filter);
-                                  if constexpr (std::same_as<Filter, ResetFilter>) {
-                                    return std::make_unique<WatchedResetFilter>(filter);
-                                  } else {
-                                    return std::make_unique<WatchedKernelEkf<Filter>>(
-                                        std::move(filter), config.imu);
-                                  }
-                                });
+            return visit_variant_filter(variant, config, start,
+                                        [&config](auto filter) -> std::unique_ptr<WatchedFilter> {
+                                          using Filter = decltype(filter);
+                                          if constexpr (std::same_as<Filter, ResetFilter>) {
+                                            return std::make_unique<WatchedResetFilter>(filter);
+                                          } else {
+                                            return std::make_unique<WatchedKernelEkf<Filter>>(
+                                                std::move(filter), config.imu);
+                                          }
+                                        });
           }};
 }
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "../trial_parts.hpp"
-#include "leeway/filters/ekf.hpp"
-#include "leeway/filters/navigator.hpp"
-#include "leeway/sim/atlas.hpp"
-#include "leeway/sim/variant.hpp"
+#include "leeway/ekf/ekf.hpp"
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
+#include "leeway/sim/compare/variant.hpp"
+#include "sim/trials/trial_score.hpp"
 
 namespace leeway::sim {
 

@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "leeway/filters/heading_bank.hpp"
-#include "leeway/filters/kernel_ekf.hpp"
-#include "leeway/filters/nis_monitor.hpp"
-#include "watched_filter.hpp"
+#include "leeway/alternatives/kernel_ekf.hpp"
+#include "leeway/alternatives/nis_monitor.hpp"
+#include "leeway/navigator/heading_bank.hpp"
+#include "sim/atlas/watched_filter.hpp"
 
 namespace leeway::sim {
 

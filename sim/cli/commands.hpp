@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "leeway/error.hpp"
+#include "leeway/earth/error.hpp"
 
 namespace leeway::cli {
 

@@ -6,9 +6,9 @@
 #include <exception>
 #include <iostream>
 
-#include "commands.hpp"
-#include "leeway/sim/ranks.hpp"
-#include "report.hpp"
+#include "leeway/sim/tools/ranks.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/pages/report.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "options.hpp"
+#include "sim/cli/options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "leeway/imu_class.hpp"
-#include "leeway/sim/imu_catalogue.hpp"
-#include "leeway/sim/imu_model_file.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/sensors/imu_catalogue.hpp"
+#include "leeway/sim/sensors/imu_model_file.hpp"
 
 namespace leeway::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "leeway/imu_error_model.hpp"
-#include "output.hpp"
+#include "leeway/sensors/imu_error_model.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 

@@ -1,4 +1,4 @@
-#include "output.hpp"
+#include "sim/cli/output.hpp"
 
 #include <fmt/color.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "commands.hpp"
+#include "sim/cli/commands.hpp"
 
 namespace leeway::cli {
 namespace {

@@ -1,15 +1,15 @@
-#include "scene_logs.hpp"
+#include "sim/cli/scene_logs.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "leeway/error.hpp"
-#include "leeway/gnss_log.hpp"
-#include "leeway/imu_log.hpp"
-#include "leeway/sim/imu_simulator.hpp"
-#include "leeway/sim/receiver.hpp"
-#include "leeway/truth_log.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/logs/gnss_log.hpp"
+#include "leeway/logs/imu_log.hpp"
+#include "leeway/logs/truth_log.hpp"
+#include "leeway/sim/scene/receiver.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
 
 namespace leeway::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "leeway/sim/scene.hpp"
-#include "output.hpp"
+#include "leeway/sim/scene/scene.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 

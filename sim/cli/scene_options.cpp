@@ -1,14 +1,14 @@
-#include "scene_options.hpp"
+#include "sim/cli/scene_options.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
-#include "leeway/error.hpp"
-#include "leeway/imu_class.hpp"
-#include "leeway/sim/bias_model.hpp"
-#include "leeway/sim/filter_file.hpp"
-#include "leeway/sim/scene_file.hpp"
-#include "options.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/scene/filter_file.hpp"
+#include "leeway/sim/scene/scene_file.hpp"
+#include "leeway/sim/sensors/bias_model.hpp"
+#include "sim/cli/options.hpp"
 
 namespace leeway::cli {
 namespace {

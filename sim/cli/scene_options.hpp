@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "leeway/sim/scene.hpp"
-#include "output.hpp"
+#include "leeway/sim/scene/scene.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 

@@ -1,4 +1,4 @@
-#include "report_template.hpp"
+#include "sim/report/report_template.hpp"
 
 namespace leeway::cli {
 

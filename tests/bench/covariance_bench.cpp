@@ -2,12 +2,12 @@
 // Every kernel is restarted now and then, before its variances shrink or grow to nothing.
 #include <benchmark/benchmark.h>
 
-#include "bench/covariance_case.hpp"
-#include "bench/motion.hpp"
-#include "leeway/filters/dense_kernel.hpp"
-#include "leeway/filters/square_root_kernel.hpp"
-#include "leeway/filters/symmetric_kernel.hpp"
-#include "leeway/filters/ud_kernel.hpp"
+#include "leeway/alternatives/dense_kernel.hpp"
+#include "leeway/alternatives/square_root_kernel.hpp"
+#include "leeway/alternatives/ud_kernel.hpp"
+#include "leeway/covariance/symmetric_kernel.hpp"
+#include "tests/bench/covariance_case.hpp"
+#include "tests/bench/motion.hpp"
 
 namespace leeway {
 namespace {

@@ -2,10 +2,10 @@
 /// One covariance for every benchmark of a kernel: that of a filter at work, its noise, a fix.
 #pragma once
 
-#include "bench/motion.hpp"
-#include "filters/kernel_cases.hpp"
-#include "leeway/filters/covariance.hpp"
-#include "leeway/filters/covariance_kernel.hpp"
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/covariance/covariance_kernel.hpp"
+#include "tests/bench/motion.hpp"
+#include "tests/filters/covariance/kernel_cases.hpp"
 
 namespace leeway::test {
 

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <vector>
 
-#include "leeway/filters/error_state.hpp"
-#include "leeway/filters/navigator.hpp"
-#include "leeway/gnss_fix.hpp"
-#include "leeway/imu.hpp"
-#include "leeway/sim/imu_simulator.hpp"
-#include "leeway/sim/trajectories.hpp"
+#include "leeway/model/error_state.hpp"
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/sensors/gnss_fix.hpp"
+#include "leeway/sensors/imu.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
 
 namespace leeway::test {
 

@@ -12,15 +12,15 @@
 #include <string_view>
 #include <vector>
 
-#include "filters/recording.hpp"
-#include "leeway/filters/navigator.hpp"
-#include "leeway/gnss_log.hpp"
-#include "leeway/imu_class.hpp"
-#include "leeway/imu_log.hpp"
-#include "leeway/sim/replay.hpp"
-#include "leeway/sim/trajectories.hpp"
-#include "leeway/solution_writer.hpp"
-#include "support/temp_dir.hpp"
+#include "leeway/logs/gnss_log.hpp"
+#include "leeway/logs/imu_log.hpp"
+#include "leeway/logs/solution_writer.hpp"
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/replay/replay.hpp"
+#include "tests/filters/navigator/recording.hpp"
+#include "tests/support/temp_dir.hpp"
 
 namespace leeway {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "leeway/sim/ranks.hpp"
+#include "leeway/sim/tools/ranks.hpp"
 
 namespace {
 

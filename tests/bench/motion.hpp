@@ -2,12 +2,12 @@
 /// One motion for every benchmark of a step: a car in a turn at 45 degrees north, an IMU at 200 Hz.
 #pragma once
 
-#include "leeway/earth.hpp"
-#include "leeway/filters/error_state.hpp"
-#include "leeway/filters/transition.hpp"
-#include "leeway/imu.hpp"
-#include "leeway/rotation.hpp"
-#include "leeway/strapdown.hpp"
+#include "leeway/covariance/transition.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/earth/rotation.hpp"
+#include "leeway/model/error_state.hpp"
+#include "leeway/sensors/imu.hpp"
+#include "leeway/strapdown/strapdown.hpp"
 
 namespace leeway::test {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/lap.hpp"
-#include "leeway/filters/navigator.hpp"
+#include "leeway/navigator/navigator.hpp"
+#include "tests/bench/lap.hpp"
 
 namespace leeway {
 namespace {

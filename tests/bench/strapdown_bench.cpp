@@ -1,8 +1,8 @@
 // What one step of the strapdown costs, scheme by scheme.
 #include <benchmark/benchmark.h>
 
-#include "bench/motion.hpp"
-#include "leeway/strapdown.hpp"
+#include "leeway/strapdown/strapdown.hpp"
+#include "tests/bench/motion.hpp"
 
 namespace leeway {
 namespace {

@@ -2,10 +2,10 @@
 // to start, and alone: every rank must run it, and equally often.
 #include <benchmark/benchmark.h>
 
-#include "leeway/imu_class.hpp"
-#include "leeway/sim/campaign.hpp"
-#include "leeway/sim/covariance_analysis.hpp"
-#include "leeway/sim/trajectories.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/analysis/covariance_analysis.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/trials/campaign.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -1,10 +1,10 @@
 // What time_to_limit costs.
 #include <benchmark/benchmark.h>
 
-#include "filters/settled.hpp"
-#include "leeway/filters/time_to_limit.hpp"
-#include "leeway/imu_class.hpp"
-#include "leeway/sim/trajectories.hpp"
+#include "leeway/ekf/time_to_limit.hpp"
+#include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "tests/filters/ekf/settled.hpp"
 
 namespace leeway {
 namespace {

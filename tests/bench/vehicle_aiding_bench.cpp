@@ -1,10 +1,10 @@
 // What each vehicle aiding costs when it acts, beside one step of the filter.
 #include <benchmark/benchmark.h>
 
-#include "leeway/filters/vehicle_aiding.hpp"
-#include "leeway/filters/vehicle_measurements.hpp"
-#include "leeway/sim/imu_simulator.hpp"
-#include "leeway/sim/trajectories.hpp"
+#include "leeway/model/vehicle_measurements.hpp"
+#include "leeway/navigator/vehicle_aiding.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
 
 namespace leeway {
 namespace {

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "leeway/error.hpp"
-#include "leeway/sim/imu_model_file.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/sim/sensors/imu_model_file.hpp"
 
 /// Whatever the text, it is a model or an Error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "leeway/filters/navigator.hpp"
+#include "leeway/navigator/navigator.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "leeway/error.hpp"
-#include "leeway/sim/scene_file.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/sim/scene/scene_file.hpp"
 
 /// Whatever the text, it is a scene or an Error. Files it names are sought in a folder that is not.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -9,14 +9,14 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/covariance_case.hpp"
-#include "bench/lap.hpp"
-#include "bench/motion.hpp"
-#include "leeway/filters/symmetric_kernel.hpp"
-#include "leeway/imu_log.hpp"
-#include "leeway/solution_writer.hpp"
-#include "leeway/strapdown.hpp"
-#include "support/temp_dir.hpp"
+#include "leeway/covariance/symmetric_kernel.hpp"
+#include "leeway/logs/imu_log.hpp"
+#include "leeway/logs/solution_writer.hpp"
+#include "leeway/strapdown/strapdown.hpp"
+#include "tests/bench/covariance_case.hpp"
+#include "tests/bench/lap.hpp"
+#include "tests/bench/motion.hpp"
+#include "tests/support/temp_dir.hpp"
 
 namespace leeway {
 namespace {

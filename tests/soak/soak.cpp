@@ -18,11 +18,11 @@
 #include <string>
 #include <vector>
 
-#include "leeway/error.hpp"
-#include "leeway/filters/navigator.hpp"
-#include "leeway/sim/imu_simulator.hpp"
-#include "leeway/sim/random.hpp"
-#include "leeway/sim/trajectories.hpp"
+#include "leeway/earth/error.hpp"
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
+#include "leeway/sim/tools/random.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -165,14 +165,14 @@ class Soak {
   /// The newest fix that reached the filter is judged again when an older one comes in: the last
   /// judgement counts. One that is overtaken by a younger one is not seen at all, whatever it was.
   void note_update() {
-    const UpdateReport& report = navigator_.last_update();
+    const UpdateOutcome& report = navigator_.last_update();
     if (newest_judged_ && newest_judged_->time != report.time) book(*newest_judged_);
     newest_judged_ = report;
   }
 
-  void book(const UpdateReport& report) {
+  void book(const UpdateOutcome& report) {
     const double t_s = to_seconds(report.time);
-    if (report.outcome != UpdateReport::Outcome::kFused || t_s < settled_from_s_) return;
+    if (report.outcome != UpdateOutcome::Outcome::kFused || t_s < settled_from_s_) return;
     hour_.nis.nis_sum += report.nis;
     hour_.nis.dof_sum += report.dof;
   }
@@ -307,7 +307,7 @@ class Soak {
   double settled_from_s_{kSettlingS};
   int settled_seconds_{0};
   int restarts_{0};
-  std::optional<UpdateReport> newest_judged_{};
+  std::optional<UpdateOutcome> newest_judged_{};
   Hour hour_{};
   std::array<std::uint64_t, kVerdicts> counts_{};
   std::optional<double> first_hour_mb_{};

@@ -1,4 +1,4 @@
-#include "support/analytic_motion.hpp"
+#include "tests/support/analytic_motion.hpp"
 
 #include <GeographicLib/NormalGravity.hpp>
 #include <algorithm>

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "leeway/imu.hpp"
-#include "leeway/nav_state.hpp"
-#include "leeway/strapdown.hpp"
+#include "leeway/sensors/imu.hpp"
+#include "leeway/strapdown/nav_state.hpp"
+#include "leeway/strapdown/strapdown.hpp"
 
 namespace leeway::test {
 

@@ -7,9 +7,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "leeway/filters/covariance.hpp"
-#include "leeway/filters/gnss_measurement.hpp"
-#include "leeway/sim/scene.hpp"
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/model/gnss_measurement.hpp"
+#include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::test {
 

@@ -1,4 +1,4 @@
-#include "support/reference_vectors.hpp"
+#include "tests/support/reference_vectors.hpp"
 
 #include <zlib.h>
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "leeway/earth.hpp"
-#include "leeway/imu.hpp"
-#include "leeway/nav_state.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/sensors/imu.hpp"
+#include "leeway/strapdown/nav_state.hpp"
 
 namespace leeway::test {
 

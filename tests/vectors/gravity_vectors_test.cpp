@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "leeway/earth.hpp"
-#include "support/near.hpp"
-#include "support/reference_vectors.hpp"
+#include "leeway/earth/earth.hpp"
+#include "tests/support/near.hpp"
+#include "tests/support/reference_vectors.hpp"
 
 namespace leeway {
 

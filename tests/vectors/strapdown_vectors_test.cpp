@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "leeway/strapdown.hpp"
-#include "support/reference_vectors.hpp"
+#include "leeway/strapdown/strapdown.hpp"
+#include "tests/support/reference_vectors.hpp"
 
 namespace leeway {
 namespace {

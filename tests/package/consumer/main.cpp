@@ -1,8 +1,8 @@
 // Uses each component through its installed header and checks one value of each.
 #include <cmath>
 #include <cstdio>
-#include <leeway/earth.hpp>
-#include <leeway/filters/navigator.hpp>
+#include <leeway/earth/earth.hpp>
+#include <leeway/navigator/navigator.hpp>
 
 int main() {
   const leeway::Geodetic position{0.0, 0.0, 0.0};

@@ -1,5 +1,5 @@
 #include <cmath>
-#include <leeway/earth.hpp>
+#include <leeway/earth/earth.hpp>
 
 int main() {
   const double x_m = leeway::ecef_from_geodetic({0.0, 0.0, 0.0}).x();

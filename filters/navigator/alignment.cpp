@@ -1,0 +1,189 @@
+#include "leeway/navigator/alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "leeway/model/gnss_measurement.hpp"
+#include "lib/earth/require.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kLongestLagS = 0.3;  // between the halves of a fix
+
+}  // namespace
+
+EulerAngles level(const Eigen::Vector3d& f_b_mps2, const Eigen::Vector3d& f_level_mps2) {
+  const double in_yz = std::hypot(f_b_mps2.y(), f_b_mps2.z());
+  const double lateral = in_yz > 0.0 ? std::clamp(f_level_mps2.y() / in_yz, -1.0, 1.0) : 0.0;
+  EulerAngles rpy;
+  rpy.roll_rad = wrap_pi(std::asin(lateral) - std::atan2(f_b_mps2.y(), -f_b_mps2.z()));
+  const double down = f_b_mps2.y() * std::sin(rpy.roll_rad) + f_b_mps2.z() * std::cos(rpy.roll_rad);
+  rpy.pitch_rad = std::atan2(f_b_mps2.x(), -down) - std::atan2(f_level_mps2.x(), -f_level_mps2.z());
+  return rpy;
+}
+
+Aligner::Aligner(const AlignmentConfig& config, const EkfConfig& filter)
+    : config_(config), filter_(filter) {
+  require_positive("alignment", "min_speed_mps", config.min_speed_mps);
+  require_positive("alignment", "sideslip_rad", config.sideslip_rad);
+  require_positive("alignment", "tilt_floor_rad", config.tilt_floor_rad);
+  require_positive("alignment", "max_fix_interval_s", config.max_fix_interval_s);
+  require_positive("alignment", "rest_speed_mps", config.rest_speed_mps);
+  require_positive("alignment", "rest_turn_rad", config.rest_turn_rad);
+  require_positive("alignment", "min_level_s", config.min_level_s);
+  require_positive("alignment", "min_rest_s", config.min_rest_s);
+}
+
+void Aligner::push(const ImuIncrement& inc) {
+  since_fix_.dt_s += inc.dt_s;
+  since_fix_.dtheta_b_rad += inc.dtheta_b_rad;
+  since_fix_.dv_b_mps += inc.dv_b_mps;
+}
+
+std::optional<Alignment> Aligner::push(const GnssFix& fix) {
+  if (fix.position && fix.velocity) return take(fix);
+  const bool completes = half_ && half_->position.has_value() == fix.velocity.has_value() &&
+                         to_seconds(fix.time - half_->time) <= kLongestLagS;
+  if (!completes) {
+    half_ = fix;
+    return std::nullopt;
+  }
+  GnssFix whole = fix;
+  if (!whole.position) whole.position = half_->position;
+  if (!whole.velocity) whole.velocity = half_->velocity;
+  half_.reset();
+  return take(whole);
+}
+
+std::optional<Alignment> Aligner::take(const GnssFix& fix) {
+  const bool in_a_row = previous_ && since_fix_.dt_s > 0.0 &&
+                        to_seconds(fix.time - previous_->time) <= config_.max_fix_interval_s;
+  std::optional<Alignment> result;
+  if (in_a_row) {
+    const bool at_rest = watch_rest(*fix.velocity);
+    const bool moving = fix.velocity->v_e_mps.norm() >= config_.min_speed_mps &&
+                        previous_->velocity->v_e_mps.norm() >= 0.5 * config_.min_speed_mps;
+    if (!fix.position) {
+      // A start needs a place.
+    } else if (config_.heading_from_course) {
+      if (moving) result = align_by_course(fix, *previous_->velocity);
+    } else if (moving || (at_rest && rest_.dt_s >= config_.min_level_s)) {
+      result = level_only(fix, *previous_->velocity, at_rest);
+    }
+  }
+  previous_ = fix;
+  since_fix_ = Sum{};
+  return result;
+}
+
+bool Aligner::watch_rest(const GnssVelocity& velocity) {
+  const double free_turn_rad =
+      config_.rest_turn_rad + 3.0 * filter_.imu.gyro.bias_sigma * since_fix_.dt_s;
+  const bool at_rest = velocity.v_e_mps.norm() < config_.rest_speed_mps &&
+                       previous_->velocity->v_e_mps.norm() < config_.rest_speed_mps &&
+                       since_fix_.dtheta_b_rad.norm() < free_turn_rad;
+  if (!at_rest) return false;
+  rest_.dt_s += since_fix_.dt_s;
+  rest_.dtheta_b_rad += since_fix_.dtheta_b_rad;
+  rest_.dv_b_mps += since_fix_.dv_b_mps;
+  return true;
+}
+
+Alignment Aligner::align_by_course(const GnssFix& fix, const GnssVelocity& before) const {
+  const double dt_s = since_fix_.dt_s;
+  const Geodetic place = geodetic_from_ecef(fix.position->r_e_m);
+  const Eigen::Matrix3d C_en = ned_to_ecef(place);
+  const Eigen::Vector3d v_n = C_en.transpose() * fix.velocity->v_e_mps;
+  const Eigen::Vector3d v_old_n = C_en.transpose() * before.v_e_mps;
+  const double speed_mps = std::hypot(v_n.x(), v_n.y());
+  const double course_rad = std::atan2(v_n.y(), v_n.x());
+  const double course_old_rad = std::atan2(v_old_n.y(), v_old_n.x());
+  // The means belong to the middle of the interval, so the heading of the middle goes with them.
+  const double turn_rad = wrap_pi(course_rad - course_old_rad);
+  const double course_mid_rad = course_old_rad + 0.5 * turn_rad;
+
+  const Eigen::Vector3d f_n =
+      (v_n - v_old_n) / dt_s -
+      C_en.transpose() * gravity_e(GravityModel::kNormal, fix.position->r_e_m);
+  const Eigen::Vector3d f_level = rotation_from_euler({0.0, 0.0, course_mid_rad}).transpose() * f_n;
+  EulerAngles rpy = level(since_fix_.dv_b_mps / dt_s, f_level);
+  rpy.yaw_rad = course_rad;
+
+  Alignment result;
+  Estimate& estimate = result.estimate;
+  const Eigen::Vector3d omega_b = since_fix_.dtheta_b_rad / dt_s;
+  estimate.nav.time = fix.time;
+  estimate.nav.q_eb = Eigen::Quaterniond(C_en * rotation_from_euler(rpy)).normalized();
+  estimate.nav.v_e_mps = fix.velocity->v_e_mps;
+  estimate.nav.r_e_m = fix.position->r_e_m;
+  const Eigen::Vector3d lever = filter_.lever_arm_b_m;
+  estimate.nav.r_e_m -= antenna_position_e(estimate, lever) - fix.position->r_e_m;
+  estimate.nav.v_e_mps -= antenna_velocity_e(estimate, lever, omega_b) - fix.velocity->v_e_mps;
+
+  const double sigma_v_mps = std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
+  InitialSigma sigma;
+  sigma.position_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
+  sigma.velocity_mps = sigma_v_mps;
+  sigma.heading_rad = std::hypot(config_.sideslip_rad, sigma_v_mps / speed_mps, 0.5 * turn_rad);
+  sigma.tilt_rad = std::hypot(config_.tilt_floor_rad,
+                              filter_.imu.accelerometer.bias_sigma / kStandardGravityMps2,
+                              std::sqrt(2.0) * sigma_v_mps / (dt_s * kStandardGravityMps2));
+  result.P = initial_covariance(estimate, sigma, filter_.imu);
+  set_rest_bias(result);
+  return result;
+}
+
+Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const {
+  const double dt_s = at_rest ? rest_.dt_s : since_fix_.dt_s;
+  const Eigen::Vector3d f_b = (at_rest ? rest_.dv_b_mps : since_fix_.dv_b_mps) / dt_s;
+  const Eigen::Vector3d turn_e = fix.velocity->v_e_mps - before.v_e_mps;
+  const Eigen::Vector3d a_e = at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(turn_e / dt_s);
+  const Eigen::Vector3d f_e = a_e - gravity_e(GravityModel::kNormal, fix.position->r_e_m);
+
+  Alignment result;
+  Estimate& estimate = result.estimate;
+  estimate.nav.time = fix.time;
+  estimate.nav.q_eb = Eigen::Quaterniond::FromTwoVectors(f_b, f_e).normalized();
+  // The measured force is the mean of the interval, the attitude wanted that of its end.
+  const Eigen::Vector3d half_turn_b = 0.5 * since_fix_.dtheta_b_rad;
+  if (!at_rest) {
+    estimate.nav.q_eb = (estimate.nav.q_eb * exp_quaternion(half_turn_b)).normalized();
+  }
+  estimate.nav.v_e_mps = fix.velocity->v_e_mps;
+  estimate.nav.r_e_m = fix.position->r_e_m;
+  result.axis_e = f_e.normalized();
+  result.turn_sigma_rad = std::numbers::pi;
+
+  const double sigma_v_mps = std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
+  const double sigma_a_mps2 = at_rest ? 0.0 : std::sqrt(2.0) * sigma_v_mps / dt_s;
+  InitialSigma sigma;
+  sigma.position_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
+  sigma.velocity_mps = sigma_v_mps;
+  sigma.tilt_rad =
+      std::hypot(config_.tilt_floor_rad,
+                 std::hypot(filter_.imu.accelerometer.bias_sigma, sigma_a_mps2) / f_e.norm());
+  sigma.heading_rad = sigma.tilt_rad;
+  result.P = initial_covariance(estimate, sigma, filter_.imu);
+  // The turn about the axis is told apart from the rest.
+  transform_block(result.P, kPsi,
+                  Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose());
+  set_rest_bias(result);
+  return result;
+}
+
+void Aligner::set_rest_bias(Alignment& result) const {
+  if (rest_.dt_s >= config_.min_rest_s) {
+    result.estimate.bias.b_g_radps = rest_.dtheta_b_rad / rest_.dt_s;
+    // What is left of the bias: white noise over the rest, the Earth's rotation, which was taken
+    // for bias, and the in-run drift.
+    const TriadErrorModel& gyro = filter_.imu.gyro;
+    const double variance = gyro.noise_density * gyro.noise_density / rest_.dt_s +
+                            wgs84::kRotationRateRadps * wgs84::kRotationRateRadps +
+                            gyro.in_run.sigma * gyro.in_run.sigma;
+    result.P.diagonal().segment<3>(kBg).setConstant(variance);
+  }
+}
+
+}  // namespace leeway

@@ -1,0 +1,185 @@
+#include "leeway/navigator/heading_bank.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "leeway/earth/error.hpp"
+#include "leeway/earth/rotation.hpp"
+#include "leeway/model/gnss_measurement.hpp"
+
+namespace leeway {
+namespace {
+
+// What each was chosen by: docs/theory/navigator/heading_bank.md.
+constexpr double kSpacingRad = 18.0 * kRadPerDeg;  // wider where twelve members do not reach
+constexpr double kEvidenceCorrelationS = 2.0;
+constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S that decides nothing
+constexpr double kMemory = 10.0;             // independent measurements
+constexpr double kNegligibleVariance = 0.5;  // relative
+
+constexpr double kPi = 180.0 * kRadPerDeg;
+
+/// The estimate with the vehicle turned about the antenna.
+Estimate turned_about_antenna(const Estimate& estimate, const Eigen::Vector3d& turn_e_rad,
+                              const Eigen::Vector3d& lever_arm_b_m) {
+  Estimate result = estimate;
+  result.nav.q_eb = (exp_quaternion(turn_e_rad) * estimate.nav.q_eb).normalized();
+  result.nav.r_e_m +=
+      antenna_position_e(estimate, lever_arm_b_m) - antenna_position_e(result, lever_arm_b_m);
+  return result;
+}
+
+/// The covariance of attitude errors that are known in body axes, after the body has turned.
+ErrorMatrix turned_with_body(ErrorMatrix P, const Eigen::Matrix3d& turn_e) {
+  transform_block(P, kPsi, turn_e);
+  P.block<3, 3>(kPsi, kPsi) =
+      (0.5 * (P.block<3, 3>(kPsi, kPsi) + P.block<3, 3>(kPsi, kPsi).transpose())).eval();
+  return P;
+}
+
+/// Whether the heavier one alone would tell of no variance of the two, about its own estimate, more
+/// than kNegligibleVariance too little. With a probability near one half: it is the same estimate.
+/// With a tiny one: it may be another.
+/// @param probability  of the lighter of the two
+bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
+  const ErrorVector x = difference(lighter.estimate(), heavier.estimate());
+  const ErrorVector variance = heavier.covariance().diagonal();
+  const ErrorVector added = x.cwiseAbs2() + lighter.covariance().diagonal() - variance;
+  return (probability * added.array() <= kNegligibleVariance * variance.array()).all();
+}
+
+}  // namespace
+
+HeadingBank::HeadingBank(const Ekf& filter) : count_(1) { members_[0].emplace(filter); }
+
+HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
+                         const Eigen::Vector3d& axis_e, double sigma_rad) {
+  if (!(std::abs(axis_e.norm() - 1.0) < 1e-9)) {
+    throw Error("heading bank: axis_e has norm " + std::to_string(axis_e.norm()) +
+                ", must be 1 within 1e-9");
+  }
+  if (!(sigma_rad >= 0.0)) {
+    throw Error("heading bank: sigma_rad is " + std::to_string(sigma_rad) + ", must be >= 0");
+  }
+  double member_sigma_rad = sigma_rad;
+  double spacing_rad = 0.0;
+  count_ = 1;
+  if (sigma_rad > kOneFilterRad) {
+    // Three sigmas to either side, or the circle.
+    const double range_rad = std::min(6.0 * sigma_rad, 2.0 * kPi);
+    count_ = static_cast<std::size_t>(
+        std::min(std::ceil(range_rad / kSpacingRad), static_cast<double>(kMaxFilters)));
+    spacing_rad = range_rad / static_cast<double>(count_);
+    member_sigma_rad = 0.5 * spacing_rad;
+  }
+  const bool equal_weights = count_ == 1 || sigma_rad >= kWholeCircleRad;
+  // What the members' own variance leaves for their means, so that both together are sigma_rad^2.
+  const double means_variance_rad2 = sigma_rad * sigma_rad - member_sigma_rad * member_sigma_rad;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const double turn_rad =
+        (static_cast<double>(k) - 0.5 * static_cast<double>(count_ - 1)) * spacing_rad;
+    const Eigen::Vector3d turn_e_rad = turn_rad * axis_e;
+    ErrorMatrix P_member = turned_with_body(P, exp_rotation(turn_e_rad));
+    P_member.block<3, 3>(kPsi, kPsi) +=
+        member_sigma_rad * member_sigma_rad * axis_e * axis_e.transpose();
+    members_[k].emplace(config, turned_about_antenna(estimate, turn_e_rad, config.lever_arm_b_m),
+                        P_member);
+    log_weight_[k] = equal_weights ? 0.0 : -0.5 * turn_rad * turn_rad / means_variance_rad2;
+  }
+  normalize();
+}
+
+double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
+
+// p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
+double HeadingBank::evidence_weight(const UpdateOutcome& report) {
+  std::optional<Time>& last =
+      last_evidence_[static_cast<std::size_t>(std::clamp(report.dof, 0, 6))];
+  const double root =
+      last ? gnss_position_weight(to_seconds(report.time - *last), kEvidenceCorrelationS) : 1.0;
+  last = report.time;
+  return root * root;
+}
+
+void HeadingBank::weigh(const Reports& reports) {
+  const auto fused = [](const UpdateOutcome& r) {
+    return r.outcome == UpdateOutcome::Outcome::kFused;
+  };
+  if (std::none_of(reports.begin(), reports.end(), fused)) return;
+  const double weight = evidence_weight(*std::find_if(reports.begin(), reports.end(), fused));
+  std::array<double, kMaxFilters> surprise{};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k]) continue;
+    const UpdateOutcome& r = reports[k];
+    surprise[k] = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
+    const bool broken =
+        r.outcome == UpdateOutcome::Outcome::kUnusable || !std::isfinite(surprise[k]);
+    if (broken && !collapsed()) {
+      drop(k);
+      continue;
+    }
+    if (broken) surprise[k] = 0.0;  // the last one stays, whatever it is
+    least = std::min(least, surprise[k]);
+  }
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    log_weight_[k] *= 1.0 - weight / kMemory;
+    log_weight_[k] -= 0.5 * weight * std::max(surprise[k] - least - kIgnoredSurprise, 0.0);
+  }
+  normalize();
+  merge();
+}
+
+void HeadingBank::normalize() {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k] || !(log_weight_[k] > largest)) continue;
+    largest = log_weight_[k];
+    best_ = k;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (members_[k]) sum += std::exp(log_weight_[k] - largest);
+  }
+  const double log_sum = largest + std::log(sum);
+  for (std::size_t k = 0; k < kMaxFilters; ++k) log_weight_[k] -= log_sum;
+}
+
+void HeadingBank::merge() {
+  for (std::size_t i = 0; i < kMaxFilters; ++i) {
+    for (std::size_t j = i + 1; j < kMaxFilters; ++j) {
+      if (!members_[i] || !members_[j]) continue;
+      const bool i_heavier = log_weight_[i] >= log_weight_[j];
+      const std::size_t heavy = i_heavier ? i : j;
+      const std::size_t light = i_heavier ? j : i;
+      const double ratio = std::exp(log_weight_[light] - log_weight_[heavy]);
+      if (!is_negligible(*members_[light], *members_[heavy], ratio / (1.0 + ratio))) continue;
+      log_weight_[heavy] += std::log1p(ratio);
+      drop(light);
+    }
+  }
+  normalize();
+}
+
+void HeadingBank::drop(std::size_t k) {
+  members_[k].reset();
+  --count_;
+}
+
+ErrorMatrix HeadingBank::covariance() const {
+  ErrorMatrix P = ErrorMatrix::Zero();
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k]) continue;
+    ErrorMatrix second_moment = members_[k]->covariance();
+    if (k != best_) {
+      const ErrorVector x = difference(members_[k]->estimate(), best().estimate());
+      second_moment += x * x.transpose();
+    }
+    P += std::exp(log_weight_[k]) * second_moment;
+  }
+  return P;
+}
+
+}  // namespace leeway

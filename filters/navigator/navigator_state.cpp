@@ -1,0 +1,253 @@
+#include "leeway/navigator/navigator_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "leeway/model/vehicle_measurements.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
+
+AlignmentConfig alignment_of(const NavigatorConfig& config) {
+  AlignmentConfig alignment = config.alignment;
+  // A bank of headings with the non-holonomic constraint finds the course as the heading by itself,
+  // slip and turns included.
+  if (!config.C_bs || config.vehicle.non_holonomic) alignment.heading_from_course = false;
+  return alignment;
+}
+
+EkfConfig filter_of(const NavigatorConfig& config) {
+  EkfConfig filter = config.filter;
+  if (!config.C_bs) filter.lever_arm_b_m.setZero();  // where it points is not known yet
+  return filter;
+}
+
+/// Several headings about the one of the estimate.
+HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, ErrorMatrix P,
+                        double sigma_rad) {
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
+  transform_block(P, kPsi, Eigen::Matrix3d::Identity() - down_e * down_e.transpose());
+  return HeadingBank(config, estimate, P, down_e, sigma_rad);
+}
+
+ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
+  ImuIncrement result = inc;
+  result.dtheta_b_rad = C_bs * inc.dtheta_b_rad;
+  result.dv_b_mps = C_bs * inc.dv_b_mps;
+  return result;
+}
+
+}  // namespace
+
+Ekf NavigatorState::any_filter() const { return filter_anywhere(filter_of(config_)); }
+
+NavigatorState::NavigatorState(const NavigatorConfig& config)
+    : config_(config),
+      aligner_(alignment_of(config), filter_of(config)),
+      aiding_(config.vehicle, config.filter.imu),
+      C_bs_(config.C_bs) {
+  validate(config);
+}
+
+void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
+  const double variance_rad2 = heading_variance_rad2(estimate, P);
+  const double sigma_rad = std::sqrt(std::max(0.0, variance_rad2));
+  begin(sigma_rad > HeadingBank::kOneFilterRad
+            ? bank_around(filter_of(config_), estimate, P, sigma_rad)
+            : HeadingBank(Ekf(filter_of(config_), estimate, P)));
+}
+
+void NavigatorState::begin(const HeadingBank& bank) {
+  bank_ = bank;
+  note_fused(bank_->best().estimate().nav.time);
+  if (C_bs_) begin_vehicle();
+}
+
+void NavigatorState::begin_vehicle() {
+  if (!config_.vehicle.uses_parameters()) return;
+  VehicleState vehicle = vehicle_state(config_.vehicle);
+  if (!config_.C_bs) {
+    // A mount that was found is as good as the heading was.
+    constexpr double kFound = MountEstimator::kMaxHeadingSigmaRad;
+    for (const int angle : {kMountPitch, kMountYaw}) {
+      vehicle.P(angle, angle) = std::max(vehicle.P(angle, angle), kFound * kFound);
+    }
+  }
+  bank_->for_each([&](Ekf& filter) { filter.estimate_vehicle(vehicle); });
+}
+
+void NavigatorState::integrate(const ImuIncrement& inc) {
+  const ImuIncrement in_body = C_bs_ ? turned(inc, *C_bs_) : inc;
+  if (!bank_) return aligner_.push(in_body);
+  bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
+  const bool rested = aiding_.at_rest();
+  aiding_.push(in_body, *bank_);
+  if (rested && !aiding_.at_rest()) open_heading();
+  // From numbers that were sound when P was last propagated, a few samples cannot reach infinity.
+  if (bank_->best().covariance_is_current()) guard_numbers();
+}
+
+void NavigatorState::open_heading() {
+  if (!bank_->collapsed()) return;
+  const Ekf& filter = bank_->best();
+  const double sigma_rad = filter.heading_sigma_rad();
+  const ErrorMatrix P = filter.covariance();
+  // What a new filter would refuse to start from goes on in the old one: push does not throw.
+  constexpr double kLowestM = 6.35e6;  // from the Earth's centre
+  const bool can_start = filter.is_sane() && P.diagonal().minCoeff() > 0.0 &&
+                         filter.estimate().nav.r_e_m.norm() > kLowestM;
+  if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
+  VehicleState vehicle = filter.vehicle();
+  vehicle.cross.setZero();
+  const bool estimates_vehicle = filter.estimates_vehicle();
+  bank_ = bank_around(filter.config(), filter.estimate(), P, sigma_rad);
+  if (!estimates_vehicle) return;
+  bank_->for_each([&](Ekf& member) { member.estimate_vehicle(vehicle); });
+}
+
+void NavigatorState::bridge(Time to) {
+  if (!bank_) {
+    // What was collected before a hole says nothing about the attitude after it.
+    aligner_ = Aligner(alignment_of(config_), filter_of(config_));
+    return;
+  }
+  bank_->for_each([&](Ekf& filter) { filter.coast(to); });
+}
+
+Verdict NavigatorState::fuse(const GnssFix& fix) {
+  if (!bank_) {
+    align(fix);
+    return Verdict::kAligning;
+  }
+  if (bank_->best().heading_sigma_rad() > kOpenRad) open_heading();
+  last_update_ = bank_->update([&](Ekf& filter) {
+    const bool hides = aiding_.at_rest() && filter.rest_hides_heading();
+    return filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
+                               hides ? Held::kHeadingAndTurn : Held::kNothing});
+  });
+  const Verdict verdict = settle(fix);
+  if (bank_) guard_numbers();
+  if (bank_) watch_covariance();
+  if (bank_ && !C_bs_) find_mount();
+  return verdict;
+}
+
+void NavigatorState::align(const GnssFix& fix) {
+  const auto found = aligner_.push(fix);
+  if (!found) return;
+  begin(HeadingBank(filter_of(config_), found->estimate, found->P, found->axis_e,
+                    found->turn_sigma_rad));
+}
+
+void NavigatorState::note_fused(Time t) {
+  last_fused_ = t;
+  gate_recovery_.end();
+}
+
+Verdict NavigatorState::settle(const GnssFix& fix) {
+  using Outcome = UpdateOutcome::Outcome;
+  if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
+  // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
+  // distance is not one that the estimate has drifted.
+  const bool outlier = last_update_.outcome == Outcome::kGated && !gate_recovery_.is_row();
+  if (bank_->collapsed() && !outlier) {
+    if (fix.position) {
+      position_noise_.note(fix.time, last_update_.position_innovation_e_m, fix.position->R_e_m2,
+                           last_update_.position_nis);
+    }
+    if (fix.velocity) {
+      velocity_noise_.note(fix.time, last_update_.velocity_innovation_e_mps,
+                           fix.velocity->R_e_m2ps2, last_update_.velocity_nis);
+    }
+    follow_drift();
+  }
+  if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
+  last_fused_ = fix.time;
+  gate_recovery_.fused(fix);
+  return Verdict::kFused;
+}
+
+void NavigatorState::follow_drift() {
+  // Positions that keep away from the prediction by more than both claim, and agree with each
+  // other, are believed at last: a receiver that settles, or one that was wrong before.
+  constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
+  constexpr double kShare = 0.1;       // of the squared distance, at each fix
+  if (!position_noise_.has_full_window() || position_noise_.nis_ratio() < kDriftRatio) return;
+  bank_->best().widen_position(kShare / 3.0 * last_update_.position_innovation_e_m.squaredNorm());
+}
+
+Verdict NavigatorState::locked_out(const GnssFix& fix) {
+  switch (gate_recovery_.refused(fix)) {
+    case GateRecovery::Remedy::kWait:
+      return Verdict::kGated;
+    case GateRecovery::Remedy::kWiden:
+      bank_->for_each([](Ekf& filter) { filter.widen(GateRecovery::kWidening); });
+      return Verdict::kGated;
+    case GateRecovery::Remedy::kRestart:
+      bank_->for_each([&fix](Ekf& filter) { restart_motion(filter, fix); });
+      note_fused(fix.time);
+      break;
+    case GateRecovery::Remedy::kRealign:
+      realign();
+      break;
+  }
+  ++resets_;
+  return Verdict::kReset;
+}
+
+void NavigatorState::realign() {
+  ++realignments_;
+  gate_recovery_.realigned(bank_->best().estimate().nav.time);
+  bank_.reset();
+  aligner_ = Aligner(alignment_of(config_), filter_of(config_));
+  C_bs_ = config_.C_bs;
+  mount_ = MountEstimator{};
+}
+
+void NavigatorState::guard_numbers() {
+  bool sane = true;
+  bank_->for_each([&](Ekf& filter) { sane = sane && filter.is_sane(); });
+  if (!sane) realign();
+}
+
+void NavigatorState::watch_covariance() {
+  bank_->for_each([this](Ekf& filter) {
+    if (!filter.repair_covariance()) ++repairs_;
+  });
+}
+
+void NavigatorState::find_mount() {
+  mount_.push(*bank_);
+  const auto C_bs = mount_.C_bs();
+  if (!C_bs) return;
+  bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
+  C_bs_ = C_bs;
+  begin_vehicle();
+}
+
+Verdict NavigatorState::fuse(const OdometerSpeed& odometer) {
+  return aid(config_.vehicle.odometer, [&odometer](const Ekf& filter) {
+    return odometer_speed(odometer.speed_mps, odometer.sigma_mps, filter.estimate(),
+                          filter.vehicle().value, filter.omega_ib_b_radps());
+  });
+}
+
+Verdict NavigatorState::fuse(const BarometricHeight& barometer) {
+  return aid(config_.vehicle.barometer, [&barometer](const Ekf& filter) {
+    return barometric_height(barometer.height_m, barometer.sigma_m, filter.estimate(),
+                             filter.vehicle().value);
+  });
+}
+
+template <class F>
+Verdict NavigatorState::aid(bool is_on, F&& measurement) {
+  if (!is_on) return Verdict::kUnused;
+  if (!bank_ || !C_bs_) return Verdict::kAligning;
+  const UpdateOutcome report =
+      bank_->update([&](Ekf& filter) { return filter.update(measurement(filter)); });
+  return report.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
+}
+
+}  // namespace leeway

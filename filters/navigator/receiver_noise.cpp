@@ -1,0 +1,61 @@
+#include "leeway/navigator/receiver_noise.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "leeway/model/chi_square.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
+constexpr double kLargestNisRatio = 25.0;   // two outliers in a row shall not count for ever
+constexpr double kInconsistentRatio = 2.0;  // by a full window: once in 1e7
+constexpr double kFalseAlarm = 1e-6;        // by fewer fixes
+constexpr double kBandLow = 0.5;            // 90 degrees of freedom stay within with 99.99 %
+constexpr double kBandHigh = 1.6;
+constexpr double kLargestScale = 10.0;
+constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's own error changes too
+
+/// Exponential mean that starts as the plain one.
+void average(double& mean, std::int64_t& count, double value) {
+  ++count;
+  mean +=
+      (value - mean) / static_cast<double>(std::min<std::int64_t>(count, ReceiverNoise::kWindow));
+}
+
+}  // namespace
+
+bool ReceiverNoise::is_inconsistent() const {
+  if (nis_ratio_ <= kInconsistentRatio) return false;
+  const int dof = 3 * static_cast<int>(std::min<std::int64_t>(nis_count_, kWindow));
+  return nis_ratio_ > chi_square_threshold(kFalseAlarm, dof) / dof;
+}
+
+bool ReceiverNoise::errors_last() const {
+  return change_count_ >= kWindow && change_ratio_ < kBandLow;
+}
+
+void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
+                         double nis) {
+  average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestNisRatio));
+  const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
+  const Eigen::Vector3d change = innovation - previous_innovation_;
+  previous_ = t;
+  previous_innovation_ = innovation;
+  if (!in_a_row) return;
+  constexpr double kExpected = 2.0 * 3.0;
+  const double largest = kLargestRatio * sigma_scale_ * sigma_scale_;
+  const double ratio = change.dot(R.llt().solve(change)) / kExpected;
+  average(change_ratio_, change_count_, std::min(ratio, largest));
+  if (change_count_ < kWindow) return;
+  // Towards the scale that explains the changes, in about a window; a claim that would do by itself
+  // is left alone.
+  const bool would_do = change_ratio_ > kBandLow && change_ratio_ < kBandHigh;
+  const double wanted = would_do ? 1.0 : std::sqrt(change_ratio_);
+  const double moved = sigma_scale_ * std::pow(wanted / sigma_scale_, 1.0 / kWindow);
+  sigma_scale_ = std::clamp(moved, smallest_, kLargestScale);
+}
+
+}  // namespace leeway

@@ -1,0 +1,84 @@
+#include "leeway/navigator/standstill.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/earth/require.hpp"
+
+namespace leeway {
+namespace {
+
+double spread(const Eigen::Vector3d& sum, const Eigen::Vector3d& square_sum, int count) {
+  const Eigen::Vector3d mean = sum / count;
+  return std::sqrt((square_sum / count - mean.cwiseAbs2()).cwiseMax(0.0).sum());
+}
+
+}  // namespace
+
+std::optional<ImuBlock> ImuBlocks::push(const ImuIncrement& inc) {
+  const Eigen::Vector3d omega = inc.dtheta_b_rad / inc.dt_s;
+  const Eigen::Vector3d f = inc.dv_b_mps / inc.dt_s;
+  dt_s_ += inc.dt_s;
+  ++count_;
+  omega_sum_ += omega;
+  omega_square_sum_ += omega.cwiseAbs2();
+  f_sum_ += f;
+  f_square_sum_ += f.cwiseAbs2();
+  if (dt_s_ + 0.5 * inc.dt_s < kBlockS) return std::nullopt;
+  ImuBlock block;
+  block.time = inc.time;
+  block.dt_s = dt_s_;
+  block.mean_omega_ib_b_radps = omega_sum_ / count_;
+  block.mean_f_ib_b_mps2 = f_sum_ / count_;
+  block.gyro_std_radps = spread(omega_sum_, omega_square_sum_, count_);
+  block.force_std_mps2 = spread(f_sum_, f_square_sum_, count_);
+  block.count = count_;
+  *this = ImuBlocks{};
+  return block;
+}
+
+StandstillDetector::StandstillDetector(const StandstillConfig& config, const ImuErrorModel& imu)
+    : config_(config),
+      gyro_noise_rad_per_sqrt_s_(imu.gyro.noise_density),
+      force_noise_mps_per_sqrt_s_(imu.accelerometer.noise_density) {
+  require_positive("standstill", "gyro_std_radps", config.gyro_std_radps);
+  require_positive("standstill", "force_std_mps2", config.force_std_mps2);
+  require_positive("standstill", "turn_radps", config.turn_radps);
+  require_positive("standstill", "acceleration_mps2", config.acceleration_mps2);
+  require_positive("standstill", "speed_mps", config.speed_mps);
+}
+
+bool StandstillDetector::push(const ImuBlock& block, const Ekf& filter) {
+  const bool still = looks_still(block, filter);
+  const bool at_rest = still && was_still_;
+  was_still_ = still;
+  return at_rest;
+}
+
+bool StandstillDetector::looks_still(const ImuBlock& block, const Ekf& filter) const {
+  // Three axes of white noise at the rate of the samples, and half as much again.
+  const double from_noise = 1.5 * std::sqrt(3.0 * block.count / block.dt_s);
+  const double gyro_limit =
+      std::max(config_.gyro_std_radps, from_noise * gyro_noise_rad_per_sqrt_s_);
+  const double force_limit =
+      std::max(config_.force_std_mps2, from_noise * force_noise_mps_per_sqrt_s_);
+  if (block.gyro_std_radps > gyro_limit || block.force_std_mps2 > force_limit) return false;
+
+  const ErrorMatrix P = filter.covariance();
+  const auto sigma = [&P](int i) { return std::sqrt(P.diagonal().segment<3>(i).sum()); };
+  const double mean_noise = gyro_noise_rad_per_sqrt_s_ / std::sqrt(block.dt_s);
+  const double turn_limit = config_.turn_radps + 3.0 * std::hypot(sigma(kBg), mean_noise);
+  const Eigen::Vector3d rate = block.mean_omega_ib_b_radps - filter.estimate().bias.b_g_radps;
+  const NavState& nav = filter.estimate().nav;
+  const Eigen::Vector3d a_e =
+      nav.q_eb * (block.mean_f_ib_b_mps2 - filter.estimate().bias.b_a_mps2) +
+      gravity_e(GravityModel::kNormal, nav.r_e_m);
+  const double tilt_as_force = kStandardGravityMps2 * sigma(kPsi);
+  const double force_noise = force_noise_mps_per_sqrt_s_ / std::sqrt(block.dt_s);
+  const double acceleration_limit =
+      config_.acceleration_mps2 + 2.0 * std::hypot(tilt_as_force, sigma(kBa), force_noise);
+  return rate.norm() < turn_limit && a_e.norm() < acceleration_limit &&
+         filter.estimate().nav.v_e_mps.norm() < config_.speed_mps + 3.0 * sigma(kDv);
+}
+
+}  // namespace leeway

@@ -1,0 +1,108 @@
+#include "leeway/navigator/vehicle_aiding.hpp"
+
+#include <cmath>
+
+#include "leeway/model/vehicle_measurements.hpp"
+#include "lib/earth/require.hpp"
+
+namespace leeway {
+namespace {
+
+// While several headings are possible the constraint only has to tell them apart.
+constexpr double kOpenHeadingRightMps = 0.5;
+constexpr double kOpenHeadingRightM = 1.0;
+
+}  // namespace
+
+VehicleConfig VehicleConfig::car() {
+  VehicleConfig config;
+  config.zero_velocity = true;
+  config.zero_angular_rate = true;
+  config.non_holonomic = true;
+  config.odometer = true;
+  config.barometer = true;
+  return config;
+}
+
+void validate(const VehicleConfig& config) {
+  constexpr const char* kOwner = "vehicle";
+  require_positive(kOwner, "rest_sigma_mps", config.rest_sigma_mps);
+  require_positive(kOwner, "rest_turn_sigma_radps", config.rest_turn_sigma_radps);
+  require_positive(kOwner, "min_speed_mps", config.min_speed_mps);
+  require_positive(kOwner, "right_sigma_mps", config.right_sigma_mps);
+  require_not_negative(kOwner, "right_sigma_m", config.right_sigma_m);
+  require_positive(kOwner, "down_sigma_m2ps2", config.down_sigma_m2ps2);
+  require(std::abs(config.rear_axle_x_m) <= 100.0, kOwner, "rear_axle_x_m", config.rear_axle_x_m,
+          "within 100 m");
+  require_not_negative(kOwner, "rear_axle_sigma_m", config.rear_axle_sigma_m);
+  require_not_negative(kOwner, "mount_sigma_rad", config.mount_sigma_rad);
+  require_not_negative(kOwner, "mount_walk_rad_per_sqrt_s", config.mount_walk_rad_per_sqrt_s);
+  require_not_negative(kOwner, "odometer_scale_sigma", config.odometer_scale_sigma);
+  require_not_negative(kOwner, "odometer_walk_per_sqrt_s", config.odometer_walk_per_sqrt_s);
+  require_not_negative(kOwner, "height_offset_sigma_m", config.height_offset_sigma_m);
+  require_not_negative(kOwner, "height_walk_m_per_sqrt_s", config.height_walk_m_per_sqrt_s);
+}
+
+VehicleState vehicle_state(const VehicleConfig& config) {
+  VehicleState state;
+  state.value(kRearAxleX) = config.rear_axle_x_m;
+  VehicleVector sigma;
+  sigma << config.mount_sigma_rad, config.mount_sigma_rad, config.rear_axle_sigma_m,
+      config.odometer_scale_sigma, config.height_offset_sigma_m;
+  state.P = sigma.cwiseAbs2().asDiagonal();
+  VehicleVector walk;
+  walk << config.mount_walk_rad_per_sqrt_s, config.mount_walk_rad_per_sqrt_s, 0.0,
+      config.odometer_walk_per_sqrt_s, config.height_walk_m_per_sqrt_s;
+  state.random_walk_per_s = walk.cwiseAbs2();
+  return state;
+}
+
+VehicleAiding::VehicleAiding(const VehicleConfig& config, const ImuErrorModel& imu)
+    : config_(config),
+      gyro_noise_rad_per_sqrt_s_(imu.gyro.noise_density),
+      standstill_(config.standstill, imu) {
+  validate(config);
+}
+
+void VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
+  const auto block = blocks_.push(inc);
+  if (!block) return;
+  at_rest_ = standstill_.push(*block, bank.best());
+  at_rest_ ? rest(*block, bank) : roll(*block, bank);
+}
+
+void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
+  if (config_.zero_velocity) {
+    bank.update([this](Ekf& filter) {
+      return filter.update(zero_velocity(filter.estimate(), config_.rest_sigma_mps),
+                           filter.rest_hides_heading() ? Held::kHeadingAndTurn : Held::kNothing);
+    });
+  }
+  if (config_.zero_angular_rate) {
+    const double noise = gyro_noise_rad_per_sqrt_s_ / std::sqrt(block.dt_s);
+    const double sigma = std::hypot(noise, config_.rest_turn_sigma_radps);
+    bank.update([&](Ekf& filter) {
+      return filter.update(zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma),
+                           filter.rest_hides_heading() ? Held::kHeading : Held::kNothing);
+    });
+  }
+}
+
+void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
+  if (!config_.non_holonomic || !bank.best().estimates_vehicle()) return;
+  const double speed_mps = bank.best().estimate().nav.v_e_mps.norm();
+  if (speed_mps < config_.min_speed_mps) return;
+  const double turn_radps =
+      (block.mean_omega_ib_b_radps - bank.best().estimate().bias.b_g_radps).norm();
+  double right_mps = std::hypot(config_.right_sigma_mps, config_.right_sigma_m * turn_radps);
+  if (!bank.collapsed()) {
+    right_mps = std::hypot(right_mps, kOpenHeadingRightMps + kOpenHeadingRightM * turn_radps);
+  }
+  bank.update([&](Ekf& filter) {
+    return filter.update(non_holonomic(filter.estimate(), filter.vehicle().value,
+                                       filter.omega_ib_b_radps(), right_mps,
+                                       config_.down_sigma_m2ps2 / speed_mps));
+  });
+}
+
+}  // namespace leeway

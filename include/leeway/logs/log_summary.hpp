@@ -1,0 +1,46 @@
+/// @file
+/// What a log reader met on its way: lines, records, and every damaged line by its reason.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace leeway {
+
+/// Why a line was not used.
+enum class LineDamage {
+  kNotANumber,
+  kMissingField,
+  kNotFinite,
+  kTimeGoesBack,
+  kDuplicateTime,
+  kTimeJumpsAhead,  ///< of the lines after it, which go on from before the jump
+  kOutOfRange,
+  kTooLong,  ///< LineReader::kMaxLineBytes
+};
+inline constexpr std::size_t kLineDamageCount = 8;
+
+std::string_view name(LineDamage reason);
+
+/// A damaged line costs that line, not the log.
+struct LogSummary {
+  static constexpr std::size_t kMaxMessages = 10;
+
+  std::int64_t lines{0};    ///< that carry data: no header, comments, blank lines
+  std::int64_t records{0};  ///< delivered
+  std::array<std::int64_t, kLineDamageCount> damaged{};  ///< indexed by LineDamage
+  std::vector<std::string> messages{};  ///< of the first damaged lines: path:line:column: reason
+  std::string incomplete{};             ///< empty, or why the file ended early (LineReader::damage)
+
+  std::int64_t count(LineDamage reason) const { return damaged[static_cast<std::size_t>(reason)]; }
+  std::int64_t damaged_lines() const;
+  bool clean() const { return damaged_lines() == 0 && incomplete.empty(); }
+
+  void add_damage(LineDamage reason, std::string message);
+};
+
+}  // namespace leeway

@@ -1,0 +1,36 @@
+/// @file
+/// The measurement model of a GNSS fix, lever arm included.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "leeway/model/error_state.hpp"
+#include "leeway/model/measurement.hpp"
+#include "leeway/sensors/gnss_fix.hpp"
+
+namespace leeway {
+
+/// Where the antenna is and how fast, for an estimate.
+/// @param lever_arm_b_m     IMU to antenna, body axes
+/// @param omega_ib_b_radps  measured angular rate at the time of the fix (bias not yet removed)
+Eigen::Vector3d antenna_position_e(const Estimate& estimate, const Eigen::Vector3d& lever_arm_b_m);
+Eigen::Vector3d antenna_velocity_e(const Estimate& estimate, const Eigen::Vector3d& lever_arm_b_m,
+                                   const Eigen::Vector3d& omega_ib_b_radps);
+
+/// What the position of a fix is weighted by, as a factor on its innovation over sigma, when its
+/// error is correlated with that of a fix dt_s earlier: of a Gauss-Markov error with
+/// a = exp(-dt / correlation), each fix counts as white noise of variance R (1 + a) / (1 - a).
+inline double gnss_position_weight(double dt_s, double correlation_s) {
+  // (1 - a) / (1 + a) is the tanh; a second fix at the same time repeats the first: weight 0.
+  return correlation_s > 0.0 ? std::sqrt(std::tanh(0.5 * dt_s / correlation_s)) : 1.0;
+}
+
+/// Linearizes the fix about the estimate: 3 rows for a position or a velocity, 6 for both, position
+/// first. @pre is_usable(fix), fix.time is the estimate's time.
+/// Source: Groves (2013) (14.104)-(14.111), ECEF form, signs by error_state.hpp.
+Measurement gnss_measurement(const GnssFix& fix, const Estimate& estimate,
+                             const Eigen::Vector3d& lever_arm_b_m,
+                             const Eigen::Vector3d& omega_ib_b_radps);
+
+}  // namespace leeway

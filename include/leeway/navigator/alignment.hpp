@@ -1,0 +1,94 @@
+/// @file
+/// Alignment: the first attitude, from the specific force and the GNSS course.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "leeway/earth/rotation.hpp"
+#include "leeway/ekf/ekf.hpp"
+#include "leeway/sensors/gnss_fix.hpp"
+#include "leeway/sensors/imu.hpp"
+
+namespace leeway {
+
+/// Roll and pitch that take the measured mean specific force to the expected one in the levelled
+/// frame (forward, right, down along the heading). At rest f_level = (0, 0, -g): static levelling.
+/// Yaw is 0 in the result. @pre f_b is not zero. Source: Groves (2013) (5.101), generalized.
+EulerAngles level(const Eigen::Vector3d& f_b_mps2, const Eigen::Vector3d& f_level_mps2);
+
+struct AlignmentConfig {
+  /// Whether the vehicle points where it goes and its axes are known. If not, it starts with a
+  /// heading that is anywhere on the circle.
+  bool heading_from_course{true};
+  double min_speed_mps{3.0};       ///< course is taken as heading from this speed on
+  double sideslip_rad{0.05};       ///< 1 sigma of heading against course: slip and mount
+  double tilt_floor_rad{0.03};     ///< 1 sigma of levelling beyond what the fixes explain
+  double max_fix_interval_s{2.5};  ///< two fixes further apart than this give no acceleration
+  double rest_speed_mps{0.2};      ///< below this a fix counts as at rest
+  double rest_turn_rad{0.01};      ///< ... if the IMU turned less than this since the fix before,
+                                   ///< beyond its turn-on bias
+  double min_level_s{1.0};         ///< a rest this long is enough to level
+  double min_rest_s{3.0};          ///< a rest this long gives the gyro bias
+};
+
+/// What an alignment found: a start for the filter.
+struct Alignment {
+  Estimate estimate{};
+  ErrorMatrix P{ErrorMatrix::Zero()};
+  /// Beside P the attitude is uncertain by a turn about this axis (ECEF, unit): what levelling
+  /// leaves open.
+  Eigen::Vector3d axis_e{Eigen::Vector3d::UnitZ()};
+  double turn_sigma_rad{0.0};
+};
+
+/// Collects IMU data and fixes until the attitude can be told. With heading from course that is
+/// when the vehicle moves fast enough; a long wait at a standstill is normal, and yields the gyro
+/// bias. Without, it is levelled after a rest, or on the move by two fixes in a row, and its
+/// heading is left open. No heap, no exceptions after construction.
+class Aligner {
+ public:
+  /// @throws Error when the configuration is invalid.
+  Aligner(const AlignmentConfig& config, const EkfConfig& filter);
+
+  /// @pre inc.dt_s > 0.
+  void push(const ImuIncrement& inc);
+
+  /// The alignment at the time of this fix, as soon as two fixes with velocity in a row allow it. A
+  /// fix that was cut in two for its lags is put together again. @pre is_usable(fix); increments up
+  /// to fix.time have been pushed.
+  std::optional<Alignment> push(const GnssFix& fix);
+
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(previous_, half_, since_fix_, rest_);
+  }
+
+ private:
+  std::optional<Alignment> take(const GnssFix& fix);
+  bool watch_rest(const GnssVelocity& velocity);
+  Alignment align_by_course(const GnssFix& fix, const GnssVelocity& before) const;
+  Alignment level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const;
+  void set_rest_bias(Alignment& alignment) const;
+
+  struct Sum {
+    template <class Archive>
+    void visit(Archive& archive) {
+      archive(dt_s, dtheta_b_rad, dv_b_mps);
+    }
+
+    double dt_s{0.0};
+    Eigen::Vector3d dtheta_b_rad{Eigen::Vector3d::Zero()};
+    Eigen::Vector3d dv_b_mps{Eigen::Vector3d::Zero()};
+  };
+
+  AlignmentConfig config_;
+  EkfConfig filter_;
+  std::optional<GnssFix> previous_{};
+  std::optional<GnssFix> half_{};  // waits for its other half
+  Sum since_fix_{};
+  Sum rest_{};
+};
+
+}  // namespace leeway

@@ -1,0 +1,110 @@
+/// @file
+/// A Gaussian sum filter over heading: a few EKFs that differ in heading, weighted by how well each
+/// foretells the fixes, until one is left.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "leeway/earth/rotation.hpp"
+#include "leeway/earth/time.hpp"
+#include "leeway/ekf/ekf.hpp"
+#include "leeway/model/error_state.hpp"
+
+namespace leeway {
+
+/// After construction nothing here allocates, throws, logs or locks; same inputs give the same
+/// bits. A copy of a collapsed bank copies one filter. The object takes 50 kB.
+/// Source: Alspach and Sorenson (1972); docs/theory/navigator/heading_bank.md.
+class HeadingBank {
+ public:
+  static constexpr std::size_t kMaxFilters = 12;
+  /// Up to this spread one filter is enough.
+  static constexpr double kOneFilterRad = 15.0 * kRadPerDeg;
+  /// From this spread on the heading is anywhere on the circle.
+  static constexpr double kWholeCircleRad = 1.5;
+
+  /// A known heading: one filter, no spread.
+  explicit HeadingBank(const Ekf& filter);
+
+  /// An attitude that is uncertain by a turn about an axis.
+  /// @param estimate   the middle of the spread
+  /// @param P          covariance around every member, without the variance of that turn. Its
+  ///                   attitude errors are those of the body axes (levelling): they turn along
+  /// @param axis_e     unit vector, ECEF: the local vertical, or the specific force that levelled
+  /// @param sigma_rad  of the turn, >= 0; kWholeCircleRad and more: nothing is known of it
+  /// The members turn about the antenna, which is where the fixes saw it.
+  /// @throws Error as Ekf does, and unless axis_e is of unit length and sigma_rad >= 0.
+  HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
+              const Eigen::Vector3d& axis_e, double sigma_rad);
+
+  /// Runs f on every member: predict, coast. f: void(Ekf&), the same for all.
+  template <class F>
+  void for_each(F&& f) {
+    for (std::optional<Ekf>& member : members_) {
+      if (member) f(*member);
+    }
+  }
+
+  /// Runs f on every member, weights the members by the likelihood of what f reports, drops those
+  /// that it refutes and those that agree with a heavier one.
+  /// @param f  UpdateOutcome(Ekf&): a fix, or a pseudo measurement. It fills nis, gate and
+  /// log_det_S.
+  /// @returns the report of best().
+  template <class F>
+  UpdateOutcome update(F&& f) {
+    Reports reports{};
+    for (std::size_t k = 0; k < kMaxFilters; ++k) {
+      if (members_[k]) reports[k] = f(*members_[k]);
+    }
+    if (!collapsed()) weigh(reports);
+    return reports[best_];
+  }
+
+  bool collapsed() const { return count_ == 1; }
+  std::size_t count() const { return count_; }
+
+  /// The heaviest member.
+  const Ekf& best() const { return *members_[best_]; }
+  Ekf& best() { return *members_[best_]; }
+
+  /// Probability of best(), 0 to 1.
+  double best_weight() const;
+
+  /// Second moment of the error of best().estimate() by the whole mixture: every member's
+  /// covariance and the square of its distance. Its attitude errors may reach pi.
+  ErrorMatrix covariance() const;
+
+  /// Names every member that changes, for a snapshot. @param filter  any, of this configuration
+  template <class Archive>
+  void visit(Archive& archive, const Ekf& filter) {
+    for (std::optional<Ekf>& member : members_) {
+      bool is_there = member.has_value();
+      archive(is_there);
+      Ekf content = member.value_or(filter);
+      archive(content);
+      if (is_there) member = content;
+      if (!is_there) member.reset();
+    }
+    archive(log_weight_, count_, best_, last_evidence_);
+  }
+
+ private:
+  using Reports = std::array<UpdateOutcome, kMaxFilters>;
+
+  void weigh(const Reports& reports);
+  double evidence_weight(const UpdateOutcome& report);
+  void normalize();
+  void merge();
+  void drop(std::size_t k);
+
+  std::array<std::optional<Ekf>, kMaxFilters> members_{};
+  std::array<double, kMaxFilters> log_weight_{};  // of the members that are left
+  std::size_t count_{0};
+  std::size_t best_{0};
+  std::array<std::optional<Time>, 7> last_evidence_{};  // by the components of the measurement
+};
+
+}  // namespace leeway

@@ -1,0 +1,41 @@
+/// @file
+/// How well a navigator is, for the software that depends on it.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace leeway {
+
+struct Health {
+  enum class State : std::uint8_t {
+    kAligning,      ///< no solution yet
+    kHeadingOpen,   ///< several headings are possible: sigmas span them all
+    kAligned,       ///< as it should be
+    kCoasting,      ///< no fix was fused for longer than 2 s
+    kGating,        ///< fixes come, and are refused
+    kInconsistent,  ///< innovations are larger than the filter claims, or the IMU cannot be right
+  };
+
+  State state{State::kAligning};
+  double coasting_s{0.0};  ///< since the newest fix that was fused
+  double gating_s{0.0};    ///< since the first of the fixes refused in a row; 0 when none is
+  /// Mean of NIS / dof over the last 30 fixes or so; 1 is consistent, below 1 modest.
+  double position_nis_ratio{1.0};
+  double velocity_nis_ratio{1.0};
+  double optimistic_by{1.0};         ///< square root of the larger of them, at least 1
+  double position_sigma_scale{1.0};  ///< what the receiver's deviations are multiplied by
+  double velocity_sigma_scale{1.0};
+  /// Position errors repeat themselves from fix to fix while they are fused as white: sigmas are
+  /// too small. To be mended by EkfConfig::gnss_correlation_s.
+  bool correlated_fixes{false};
+  bool mount_known{true};
+  bool at_rest{false};            ///< by the detector of the vehicle aiding
+  std::uint32_t repairs{0};       ///< of a covariance that was no longer positive definite
+  std::uint32_t resets{0};        ///< of position and velocity after the gate had locked out
+  std::uint32_t realignments{0};  ///< of everything
+};
+
+std::string_view name(Health::State state);
+
+}  // namespace leeway

@@ -1,0 +1,63 @@
+/// @file
+/// What the innovations say of a sensor's claimed noise.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "leeway/earth/time.hpp"
+
+namespace leeway {
+
+/// A factor on the standard deviations that a receiver claims, learned from how much the
+/// innovations change from one fix to the next: that is its noise, while what they have in common
+/// is an error that lasts, the receiver's or the filter's. Up to 10 when the receiver is
+/// over-confident; within a band around 1 the claim is left alone. Source:
+/// docs/theory/navigator/receiver_noise.md.
+class ReceiverNoise {
+ public:
+  static constexpr int kWindow = 30;  ///< fixes
+
+  /// @param smallest  how far down a modest claim may be scaled, at most 1. Errors that are alike
+  ///                  from fix to fix do not show here, and count.
+  explicit ReceiverNoise(double smallest) : smallest_(smallest) {}
+
+  double sigma_scale() const { return sigma_scale_; }
+
+  /// Mean of nis / dof over the last 30 fixes or so, by the scaled claim; 1 before any.
+  double nis_ratio() const { return nis_ratio_; }
+
+  /// Whether nis_ratio() is beyond what chance makes of so many fixes.
+  bool is_inconsistent() const;
+
+  /// Whether errors repeat themselves from fix to fix: over a full window the innovations change by
+  /// less than half of what white errors of the claimed size would make them.
+  bool errors_last() const;
+
+  /// Whether nis_ratio() is the mean of a full window.
+  bool has_full_window() const { return nis_count_ >= kWindow; }
+
+  /// Of three components judged with the present scale, fused or gated.
+  /// @param innovation  measured - predicted
+  /// @param R           as claimed, not scaled
+  void note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, double nis);
+
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(sigma_scale_, nis_ratio_, change_ratio_, nis_count_, change_count_, previous_,
+            previous_innovation_);
+  }
+
+ private:
+  double smallest_;
+  double sigma_scale_{1.0};
+  double nis_ratio_{1.0};
+  double change_ratio_{1.0};  // of squared changes to what the claim lets expect
+  std::int64_t nis_count_{0};
+  std::int64_t change_count_{0};
+  std::optional<Time> previous_{};
+  Eigen::Vector3d previous_innovation_{Eigen::Vector3d::Zero()};
+};
+
+}  // namespace leeway

@@ -1,0 +1,80 @@
+/// @file
+/// What is known of a vehicle without asking a receiver: that it stands, that it does not slide.
+#pragma once
+
+#include "leeway/model/vehicle_state.hpp"
+#include "leeway/navigator/heading_bank.hpp"
+#include "leeway/navigator/standstill.hpp"
+
+namespace leeway {
+
+/// Each part is off unless switched on; car() is the set for a road vehicle. Sigmas of constraints
+/// stand for errors that last, fused twice a second as if they were white: they are larger than
+/// what the innovations show (docs/theory/navigator/vehicle_aiding.md).
+struct VehicleConfig {
+  bool zero_velocity{false};
+  bool zero_angular_rate{false};
+  bool non_holonomic{false};
+  bool odometer{false};
+  bool barometer{false};
+
+  StandstillConfig standstill{};
+  double rest_sigma_mps{0.05};         ///< velocity at rest: the body on its springs
+  double rest_turn_sigma_radps{2e-5};  ///< rate at rest, beyond the gyro's white noise
+  double min_speed_mps{2.0};           ///< below it the constraint says little of the heading
+  double right_sigma_mps{0.06};        ///< velocity of the rear axle to the right ...
+  double right_sigma_m{1.0};           ///< ... and more by this times the rate of turn: slip
+  double down_sigma_m2ps2{1.2};        ///< times 1 / speed: its velocity downwards, brakes, humps
+  double rear_axle_x_m{-1.3};          ///< IMU to rear axle along the body's x axis
+  double rear_axle_sigma_m{0.5};
+  double mount_sigma_rad{0.05};  ///< pitch and yaw of the mount
+  double mount_walk_rad_per_sqrt_s{2e-5};
+  double odometer_scale_sigma{0.03};
+  double odometer_walk_per_sqrt_s{1e-5};
+  double height_offset_sigma_m{100.0};
+  double height_walk_m_per_sqrt_s{0.05};  ///< weather
+
+  /// A road vehicle: at rest when it rests, and never sideways. Odometer and barometer are used if
+  /// there are any.
+  static VehicleConfig car();
+
+  /// Whether a part that is on depends on the vehicle's parameters.
+  bool uses_parameters() const { return non_holonomic || odometer || barometer; }
+};
+
+/// @throws Error when a value is out of range.
+void validate(const VehicleConfig& config);
+
+/// The vehicle's parameters as far as the configuration knows them.
+VehicleState vehicle_state(const VehicleConfig& config);
+
+/// Watches the IMU and tells the filter, twice a second, what follows from the vehicle being one.
+/// No heap, no exceptions after construction.
+class VehicleAiding {
+ public:
+  /// @throws Error when a value is out of range.
+  VehicleAiding(const VehicleConfig& config, const ImuErrorModel& imu);
+
+  /// Right after the filters have been advanced by inc.
+  void push(const ImuIncrement& inc, HeadingBank& bank);
+
+  bool at_rest() const { return at_rest_; }
+
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(blocks_, standstill_, at_rest_);
+  }
+
+ private:
+  void rest(const ImuBlock& block, HeadingBank& bank) const;
+  void roll(const ImuBlock& block, HeadingBank& bank) const;
+
+  VehicleConfig config_;
+  double gyro_noise_rad_per_sqrt_s_;
+  ImuBlocks blocks_{};
+  StandstillDetector standstill_;
+  bool at_rest_{false};
+};
+
+}  // namespace leeway

@@ -1,0 +1,53 @@
+/// @file
+/// A GNSS fix: position and/or velocity with 3x3 covariances. What is absent is absent in the type.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "leeway/earth/earth.hpp"
+#include "leeway/earth/time.hpp"
+
+namespace leeway {
+
+/// Antenna position in ECEF with its covariance in ECEF axes.
+struct GnssPosition {
+  Eigen::Vector3d r_e_m{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d R_e_m2{Eigen::Matrix3d::Identity()};
+
+  /// From geodetic coordinates and a covariance in north-east-down axes.
+  static GnssPosition from_geodetic(const Geodetic& position, const Eigen::Matrix3d& R_n_m2);
+};
+
+/// Antenna velocity in ECEF with its covariance in ECEF axes.
+struct GnssVelocity {
+  Eigen::Vector3d v_e_mps{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d R_e_m2ps2{Eigen::Matrix3d::Identity()};
+
+  /// From north-east-down components at a place and a covariance in the same axes.
+  static GnssVelocity from_ned(const Geodetic& place, const Eigen::Vector3d& v_n_mps,
+                               const Eigen::Matrix3d& R_n_m2ps2);
+};
+
+/// One epoch of a receiver. Either part may be missing.
+struct GnssFix {
+  Time time{};
+  std::optional<GnssPosition> position{};
+  std::optional<GnssVelocity> velocity{};
+};
+
+/// The least standard deviation of a measurement, m or m/s, far below what any sensor claims: below
+/// it, squares and their inverses run out of range.
+inline constexpr double kLeastSigma = 1e-12;
+
+/// True when the fix has a part, all numbers are finite, the position is within 100 km of the
+/// ellipsoid's surface, and every covariance is symmetric and positive definite, with at least
+/// kLeastSigma given the other axes. A fix that fails is bad data: count it, use nothing of it.
+bool is_usable(const GnssFix& fix);
+
+/// True when the way between two fixes is what their velocities say, within what their covariances
+/// and an acceleration that changes by 3 m/s^2 in between explain in 99.9 % of all cases. False
+/// unless both are whole and at most 5 s apart. @pre is_usable() of both.
+bool agree(const GnssFix& earlier, const GnssFix& later);
+
+}  // namespace leeway

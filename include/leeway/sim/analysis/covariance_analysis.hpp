@@ -1,0 +1,106 @@
+/// @file
+/// Covariance analysis of a scene: what the filter claims, what is true when the sensors and the
+/// receiver have errors that the filter does not model, and which source the error comes from.
+/// Linear: no trials, no noise in the answer. sim/campaign.hpp is the nonlinear check.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "leeway/model/error_state.hpp"
+#include "leeway/model/horizontal.hpp"
+#include "leeway/sim/analysis/error_track.hpp"
+#include "leeway/sim/scene/scene.hpp"
+
+namespace leeway::sim {
+
+/// Where errors come from. Sources are independent of each other, so their variances add up.
+enum class ErrorSource {
+  kInitial,             ///< attitude, velocity and position at the start
+  kAccelerometerBias,   ///< turn-on spread, and what the filter is not told of the known part
+  kAccelerometerDrift,  ///< in-run Gauss-Markov
+  kAccelerometerNoise,  ///< white
+  kAccelerometerScale,  ///< diagonal of M_a
+  kAccelerometerMisalignment,  ///< the rest of M_a
+  kGyroBias,
+  kGyroDrift,
+  kGyroNoise,
+  kGyroScale,
+  kGyroMisalignment,
+  kGyroGSensitivity,  ///< G_g
+  kGnssPosition,      ///< white
+  kGnssCorrelated,    ///< Gauss-Markov, of position
+  kGnssVelocity,      ///< white
+};
+
+std::string_view name(ErrorSource source);
+
+/// What one source contributes.
+struct BudgetLine {
+  ErrorSource source{};
+  Eigen::Matrix3d mean_sq_n_m2{Eigen::Matrix3d::Zero()};  ///< E[x x^T], north, east, down
+};
+
+/// The sources that the scene has. Their mean squares add up to that of the error.
+using ErrorBudget = std::vector<BudgetLine>;
+
+/// A moment of the scene.
+struct CovariancePoint {
+  enum class Moment {
+    kBetween,    ///< on the way
+    kBeforeFix,  ///< a fix has arrived and is not used yet
+    kAfterFix
+  };
+  double t_s{};
+  Moment moment{Moment::kBetween};
+  Eigen::Vector3d r_e_m{Eigen::Vector3d::Zero()};  ///< of the truth
+  ErrorMatrix claimed{ErrorMatrix::Zero()};        ///< the filter's covariance
+  ErrorMatrix truth{ErrorMatrix::Zero()};          ///< E[x x^T] of its error
+};
+
+struct CovarianceConfig {
+  bool by_source{false};  ///< splits the truth by source: about as many times slower
+  /// Called at every step and on both sides of every fix.
+  std::function<void(const CovariancePoint&)> observer{};
+};
+
+/// How a scene ends: the largest error just before a fix over its last part,
+/// scored_part_s(scene).
+struct CovarianceAnalysis {
+  double claimed_m{};  ///< by the scene's metric
+  double true_m{};
+  double claimed_drms_m{};  ///< root mean square over the last part's fixes, not the largest: what
+  double true_drms_m{};     ///< a Monte Carlo of the scene averages
+  double worst_s{};         ///< when the true one is largest
+  CovariancePoint worst{};  ///< there
+  ErrorBudget budget{};     ///< there; empty unless by_source
+  double window_s{};        ///< the last part
+  std::size_t fixes{0};     ///< used by the filter
+  bool settled{false};      ///< every sigma repeats to 0.1 % from one such part to the next
+  double settled_s{};       ///< since when; the scene's end where it has not settled
+};
+
+/// The linearized dynamics that analyze() needs; those of one scene serve it with any GNSS.
+/// @param step_s  the longest step of the covariance; shortened to resolve the sensors' drift
+ErrorTrack error_track(const Scene& scene, double step_s = 1.0);
+
+/// Fixes act at their own times; with latency the error that counts is that at their arrival. The
+/// scene is followed to its end also when it has settled: what repeats to 0.1 % from one part to
+/// the next may still creep by more over a day. Outliers and the filter's gate are left out, being
+/// no linear errors.
+/// @param track  error_track() of this scene
+/// @throws Error when the scene is invalid, or no fix falls into the last part.
+CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
+                           const CovarianceConfig& config = {});
+
+/// The error that grows without any fix from a start without error in attitude, velocity and
+/// position; the sensors have theirs.
+/// @param observer  called at every step of the track until it returns false or the scene ends
+/// @throws Error when the scene is invalid.
+void free_inertial(const Scene& scene, const ErrorTrack& track,
+                   const std::function<bool(const CovariancePoint&)>& observer);
+
+}  // namespace leeway::sim

@@ -1,0 +1,69 @@
+/// @file
+/// The linearized error dynamics along a trajectory, computed once and shared by every study of it:
+/// what a navigation error, and an unmodelled sensor parameter, become later.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "leeway/covariance/transition.hpp"
+#include "leeway/sim/motion/trajectory.hpp"
+
+namespace leeway::sim {
+
+/// The elements of the sensors' matrices of [seed (1)-(2)], column by column: M_a, M_g, G_g.
+/// Constants that a 15-state filter does not know.
+inline constexpr int kSensorParameters = 27;
+inline constexpr int kMa = 0;
+inline constexpr int kMg = 9;
+inline constexpr int kGg = 18;
+using ParameterMatrix = Eigen::Matrix<double, kErrorStates, kSensorParameters>;
+
+/// The dynamics over a stretch of time: error' = Phi error + B parameters.
+struct Leg {
+  double end_s{};
+  Transition Phi{};
+  ParameterMatrix B{ParameterMatrix::Zero()};  ///< stays zero unless the track has parameters
+};
+
+struct ErrorTrackConfig {
+  double step_s{1.0};                                       ///< longest leg
+  bool parameters{false};                                   ///< whether B is wanted
+  double tau_a_s{std::numeric_limits<double>::infinity()};  ///< of the filter's bias states
+  double tau_g_s{std::numeric_limits<double>::infinity()};
+};
+
+/// Attitude, rates and gravity gradient are taken at the middle of pieces a tenth of a leg long and
+/// held over the piece: on a turn of 9 deg/s legs of 1 s err by 1e-5 of their effect. A trajectory
+/// with a period is sampled over one period.
+class ErrorTrack {
+ public:
+  /// @throws Error unless 0.01 <= step_s <= 100 and 0 < duration_s.
+  ErrorTrack(const Trajectory& trajectory, double duration_s, const ErrorTrackConfig& config);
+
+  /// From one time to the other, or to the end of the step that from_s is in, whichever is earlier.
+  /// @pre 0 <= from_s < to_s <= duration.
+  Leg leg(double from_s, double to_s) const;
+
+ private:
+  struct Piece {
+    Eigen::Matrix3d C_eb;
+    Eigen::Matrix3d gravity_gradient_e;
+    Eigen::Vector3d f_b_mps2;
+    Eigen::Vector3d omega_ib_b_radps;
+  };
+
+  void extend(Leg& leg, const Piece& piece, double dt_s) const;
+  Leg part(std::size_t step, double from_s, double to_s) const;
+
+  ErrorTrackConfig config_;
+  double step_s_;  // config_.step_s or a little less: whole steps in the span
+  double piece_s_;
+  std::vector<Piece> pieces_{};
+  std::vector<Transition> Phi_{};     // of whole steps
+  std::vector<ParameterMatrix> B_{};  // likewise
+};
+
+}  // namespace leeway::sim

@@ -1,0 +1,53 @@
+/// @file
+/// The correction interval: the longest time between fixes for which the error just before each of
+/// them stays within a budget. What Leeway exists to answer.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "leeway/sim/analysis/covariance_analysis.hpp"
+#include "leeway/sim/scene/scene.hpp"
+
+namespace leeway::sim {
+
+struct IntervalConfig {
+  double shortest_s{0.1};  ///< intervals from here to half the scene are tried
+  double tolerance{1e-3};  ///< relative, of the interval or of the error reached
+  double covariance_step_s{1.0};
+  /// Called with every interval that is analysed on the way, in no order.
+  std::function<void(double interval_s, const CovarianceAnalysis&)> observer{};
+  /// Called on the way to free_inertial_s, with the error by the scene's metric.
+  std::function<void(double t_s, double error_m)> free_inertial_observer{};
+};
+
+/// The answer for one limit.
+struct Interval {
+  enum class Outcome {
+    kSolved,
+    kNever,   ///< even at the shortest interval the error exceeds the limit; interval_s is NaN
+    kAlways,  ///< even at half the scene the error stays below; interval_s is half the scene
+  };
+  double limit_m{};
+  Outcome outcome{Outcome::kSolved};
+  double interval_s{std::numeric_limits<double>::quiet_NaN()};
+  double true_m{};     ///< the error reached at this interval, by the scene's metric
+  double claimed_m{};  ///< what the filter takes it for
+  bool settled{};      ///< whether the filter has settled by the scene's end
+  /// Without fixes from a perfect start, no calibration: the time to the limit. NaN when it is not
+  /// reached within the scene.
+  double free_inertial_s{std::numeric_limits<double>::quiet_NaN()};
+  /// Relative change of true_m when the covariance step is halved: what the step costs.
+  double step_effect{};
+};
+
+/// Solves for each limit by bracketing and secants in log(error) over log(interval), on the
+/// truth-model covariance analysis; the scene's own gnss.interval_s is not used.
+/// @param progress  called with the fraction done
+/// @throws Error when the scene, the configuration or a limit is invalid.
+std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<double>& limits_m,
+                                      const IntervalConfig& config = {},
+                                      const std::function<void(double fraction)>& progress = {});
+
+}  // namespace leeway::sim

@@ -1,0 +1,99 @@
+/// @file
+/// Replay: a recorded or simulated log through the navigator, with GNSS outages withheld one at a
+/// time, and the errors that grow in them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "leeway/logs/gnss_log.hpp"
+#include "leeway/logs/imu_log.hpp"
+#include "leeway/logs/scalar_log.hpp"
+#include "leeway/logs/truth_log.hpp"
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/sim/scene/outage.hpp"
+
+namespace leeway::sim {
+
+struct ReplayInput {
+  std::filesystem::path imu{};
+  std::filesystem::path gnss{};
+  std::filesystem::path odometer{};   ///< empty: none; t_s, speed_mps and maybe sigma_mps
+  std::filesystem::path barometer{};  ///< empty: none; t_s, height_m and maybe sigma_m
+  std::filesystem::path truth{};      ///< empty: errors against withheld fixes
+  std::filesystem::path solution{};   ///< empty: none is written
+  ImuLogOptions imu_options{};
+  GnssLogOptions gnss_options{};
+  std::vector<Outage> outages{};
+  double solution_rate_hz{10.0};
+  /// Truth outside this window is not used.
+  double truth_from_s{-1e300};
+  double truth_to_s{1e300};
+  /// Where to start; without it the navigator aligns.
+  std::optional<Alignment> start{};
+};
+
+/// Root mean squares over the solution's epochs with truth.
+struct RmsErrors {
+  std::int64_t epochs{0};
+  double horizontal_m{};
+  double vertical_m{};
+  double velocity_mps{};  ///< 3-D; NaN when the truth has none
+  double attitude_deg{};  ///< 3-D rotation angle; NaN when the truth has none
+};
+
+struct ReplayResult {
+  double first_solution_s{};
+  double last_solution_s{};
+  bool has_solution{false};
+  std::int64_t fixes_in_span{0};        ///< of the IMU data; 0: the logs do not share a time line
+  std::vector<OutageResult> outages{};  ///< in the order given
+  RmsErrors rms{};
+  std::array<std::uint64_t, kVerdicts> verdicts{};
+  std::int64_t fixes{0};  ///< that the filter judged: fused or gated
+  double nis_mean{};      ///< over the fused fixes
+  double nis_dof_mean{};  ///< what the mean should be
+  Health health{};        ///< at the end
+  std::optional<Eigen::Vector3d>
+      mount_rpy_deg{};      ///< found: Rz(Y) Ry(P) Rx(R), to forward, right, down
+  double final_roll_deg{};  ///< attitude at the end: beyond 90 deg the mount is upside down
+  LogSummary imu_report{};
+  LogSummary gnss_report{};
+  LogSummary truth_report{};
+  LogSummary odometer_report{};
+  LogSummary barometer_report{};
+};
+
+/// A branch without fixes, at the time of a withheld fix or at its end.
+struct OutageEpoch {
+  std::size_t outage{};  ///< of ReplayInput::outages
+  double since_s{};      ///< since it began
+  double error_h_m{};
+  double sigma_h_m{};  ///< the branch's own sqrt(P_NN + P_EE)
+};
+
+/// Called on the way, where not empty.
+struct ReplayObserver {
+  std::function<void(Time)> progress{};  ///< now and then, with the time reached
+  /// At the rate of the solution, with the truth of that time where there is one.
+  std::function<void(const Solution&, const std::optional<TruthRecord>&)> epoch{};
+  std::function<void(const UpdateOutcome&)> fix{};  ///< every fix that the filter judged
+  std::function<void(Time, Verdict)> verdict{};     ///< all but what is accepted or aligned with
+  std::function<void(const OutageEpoch&)> outage{};
+};
+
+/// What the logs of odometer and barometer hold.
+ScalarColumns odometer_columns();
+ScalarColumns barometer_columns();
+
+/// Runs the log in one pass and constant memory. Every outage branches from the fully aided state,
+/// so outages may overlap.
+/// @throws Error when a file cannot be read or the configuration is invalid.
+ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
+                    const ReplayObserver& observer = {});
+
+}  // namespace leeway::sim

@@ -1,0 +1,70 @@
+/// @file
+/// A scene: everything a study needs to know, as plain data. The motion, what the sensors and the
+/// receiver really do, what the filter believes, and the error that is allowed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "leeway/ekf/ekf.hpp"
+#include "leeway/model/horizontal.hpp"
+#include "leeway/sim/motion/trajectory.hpp"
+#include "leeway/sim/scene/outage.hpp"
+#include "leeway/sim/sensors/gnss_simulator.hpp"
+
+namespace leeway::sim {
+
+/// When fixes come, and what is wrong with them beyond their model.
+struct GnssScenario {
+  GnssErrorModel errors{};
+  double interval_s{1.0};           ///< fixes are valid at interval, 2 interval, ..
+  double latency_s{0.0};            ///< a fix reaches the filter this long after its time
+  std::vector<Outage> outages{};    ///< no fixes within them
+  double outlier_probability{0.0};  ///< of a fix
+  double outlier_sigma_m{50.0};     ///< 1 sigma per axis that an outlier adds to the position
+};
+
+/// The largest horizontal error allowed just before a fix is used.
+struct HorizontalBudget {
+  HorizontalMetric metric{HorizontalMetric::kDrms};
+  double limit_m{10.0};
+  double last_s{480.0};  ///< fixes this close to the end of the scene count, as scored_part_s()
+};
+
+struct Scene {
+  std::string name{};
+  Trajectory trajectory{};
+  double duration_s{};  ///< results are for the end of it; at most the trajectory's
+  double imu_rate_hz{50.0};
+  std::string imu_name{};
+  ImuErrorModel imu{};  ///< what the sensors are
+  GnssScenario gnss{};
+  EkfConfig filter{};                     ///< what the filter believes
+  int imu_divider{1};                     ///< so many increments are added to one for the filter
+  std::optional<InitialSigma> initial{};  ///< absent: by levelling and gyrocompassing
+  HorizontalBudget budget{};
+  int trials{200};
+  std::uint64_t first_seed{1};  ///< trial k has seed first_seed + k
+};
+
+/// @throws Error naming the field, its value and the allowed range.
+void validate(const Scene& scene);
+
+/// Gives the scene another IMU: the truth, the filter's belief in it, and the name.
+void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model);
+
+/// The start errors that the scene states, or those of a start by levelling (tilt: accelerometer
+/// bias over gravity) and gyrocompassing (heading: gyro bias over the horizontal Earth rate, within
+/// 1e-5 rad and 10 deg), at the GNSS's own sigmas of velocity and horizontal position.
+InitialSigma initial_sigma(const Scene& scene);
+
+/// The last part of the scene, whose fixes count: budget.last_s, two fix intervals or a period of
+/// the trajectory, whichever is longest.
+double scored_part_s(const Scene& scene);
+
+/// Times of the fixes that are not in an outage, in (0, duration].
+std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s);
+
+}  // namespace leeway::sim

@@ -1,0 +1,31 @@
+/// @file
+/// Scenes as TOML files: docs/guide/scenes.md has the sections, keys, units, ranges and defaults.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "leeway/sim/scene/scene.hpp"
+
+namespace leeway::sim {
+
+inline constexpr std::size_t kLongestSceneFile = 1 << 20;  ///< bytes
+
+/// Reads a scene, valid as validate(Scene) means it. Files that it names are taken relative to its
+/// folder.
+/// @param duration_s  in place of the file's: trajectories that have no end go on to it, and
+/// outages beyond it are left out
+/// @throws Error with path:line:column and what to write instead, when the file is unreadable, is
+/// no TOML, has an unknown or missing key, a value out of its plausible range (naming the unit in
+/// which it would be plausible), or contradicts itself; also when the trajectory ends before
+/// duration_s.
+Scene read_scene(const std::filesystem::path& path, std::optional<double> duration_s = {});
+
+/// The same from text.
+/// @param name  what messages call it; files are taken relative to its folder
+Scene parse_scene(std::string_view text, const std::string& name,
+                  std::optional<double> duration_s = {});
+
+}  // namespace leeway::sim

@@ -1,0 +1,33 @@
+/// @file
+/// What a bias does after turn-on: two readings of the same datasheet figure.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "leeway/sensors/imu_error_model.hpp"
+
+namespace leeway::sim {
+
+enum class BiasModel {
+  kConstant,     ///< stays what it was at turn-on
+  kGaussMarkov,  ///< wanders, with the same sigma at every moment
+};
+
+inline constexpr std::array kBiasModels{BiasModel::kConstant, BiasModel::kGaussMarkov};
+inline constexpr double kBiasTauS = 3600.0;  ///< of the wandering, where nothing else is said
+
+std::string_view name(BiasModel model);
+
+/// @throws Error listing the known names.
+BiasModel bias_model_from_name(std::string_view name);
+
+/// kGaussMarkov where the model has an in-run drift.
+BiasModel bias_model_of(const ImuErrorModel& model);
+
+/// The model with its biases so: kGaussMarkov makes the turn-on spread the sigma of an in-run
+/// drift.
+/// @throws Error when the model states an in-run drift of its own, or tau_s is not > 0.
+ImuErrorModel with_bias_model(const ImuErrorModel& model, BiasModel bias, double tau_s = kBiasTauS);
+
+}  // namespace leeway::sim

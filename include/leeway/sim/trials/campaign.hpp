@@ -1,0 +1,66 @@
+/// @file
+/// A Monte Carlo campaign: many trials of a scene, on threads and MPI ranks, that say whether the
+/// filter errs as much as it claims. The same bits on any number of either.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "leeway/sim/scene/scene.hpp"
+#include "leeway/sim/tools/ranks.hpp"
+
+namespace leeway::sim {
+
+struct CampaignProgress {
+  double fraction{};     ///< of the trials of this process, those of the journal included
+  double remaining_s{};  ///< estimated from the trials finished so far
+};
+
+/// Which trials is the scene's: seeds first_seed to first_seed + trials - 1.
+struct CampaignOptions {
+  int threads{0};                        ///< 0: all processors for a process alone, one per rank
+  std::optional<double> score_last_s{};  ///< as TrialPlan
+  /// Finished trials are kept here, and not run again by a campaign with the same journal: of any
+  /// number of trials, threads and ranks. Empty: nowhere.
+  std::filesystem::path journal{};
+  std::function<void(const CampaignProgress&)> progress{};  ///< called from the calling thread
+};
+
+/// Ratios are 1 when the filter is honest. NaN where no trial was scored.
+struct CampaignResult {
+  std::int64_t trials{0};
+  std::int64_t resumed{0};      ///< of them from the journal
+  std::int64_t epochs{0};       ///< scored, of all trials
+  double rms_horizontal_m{};    ///< sqrt of mean squared north + east error
+  double sigma_horizontal_m{};  ///< what the filter claims: sqrt of its mean variance
+  double rms_over_sigma{};      ///< horizontal
+  Eigen::Vector3d rms_n_m{};    ///< north, east, down
+  Eigen::Vector3d sigma_n_m{};
+  double mean_nees{};  ///< 15 states, over trials and epochs
+  /// 95 % band of the mean for a consistent filter, as from one epoch per trial: the epochs of a
+  /// trial are correlated.
+  double nees_low{};
+  double nees_high{};
+  double nis_over_dof{};  ///< of fused fixes
+  double beyond_r95{};    ///< fraction of epochs beyond the claimed R95 radius
+  std::int64_t fused{0};  ///< fixes of whole runs
+  std::int64_t gated{0};
+  std::int64_t diverged{0};     ///< trials with an error beyond ten claimed sigmas, or not finite
+  std::int64_t not_finite{0};   ///< the part of them that the figures above leave out
+  double worst_horizontal_m{};  ///< largest error before a fix; infinite when not finite
+  std::uint64_t worst_seed{};   ///< of the trial it happened in, to run again
+};
+
+/// Memory does not depend on the number of trials.
+/// @param ranks  shares the trials among its processes; the result is whole at the first only
+/// @throws Error when scene or options are invalid, JournalFailure when a trial cannot be kept,
+/// RankFailure when another rank stopped.
+CampaignResult campaign(const Scene& scene, const CampaignOptions& options, const Ranks& ranks);
+
+/// By this process alone.
+CampaignResult campaign(const Scene& scene, const CampaignOptions& options = {});
+
+}  // namespace leeway::sim

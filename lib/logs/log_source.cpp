@@ -1,0 +1,56 @@
+#include "lib/logs/log_source.hpp"
+
+#include <algorithm>
+
+#include "leeway/earth/error.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr std::size_t kMaxQuotedBytes = 48;
+constexpr Duration kWeek = std::chrono::weeks{1};
+constexpr Duration kNearWeekEnd = std::chrono::hours{1};
+
+// The offending text, cut short and safe to print.
+std::string quoted(std::string_view text) {
+  std::string quote(text.substr(0, kMaxQuotedBytes));
+  std::replace_if(
+      quote.begin(), quote.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return "'" + quote + (text.size() > kMaxQuotedBytes ? "...'" : "'");
+}
+
+}  // namespace
+
+bool is_blank_or_comment(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first == std::string_view::npos || line[first] == '#' || line[first] == '%';
+}
+
+std::string_view first_line(LineReader& lines, std::string_view expected) {
+  while (const auto line = lines.next()) {
+    if (is_blank_or_comment(*line)) continue;
+    lines.unread();
+    return *line;
+  }
+  const std::string what =
+      lines.damage().empty() ? lines.path() + ": the file is empty" : lines.damage();
+  throw Error(what + "; expected " + std::string(expected));
+}
+
+std::string damage_message(const LineReader& lines, std::string_view line, const Fault& fault) {
+  const auto column = fault.text.data() - line.data() + 1;
+  return lines.path() + ":" + std::to_string(lines.line_number()) + ":" + std::to_string(column) +
+         ": " + std::string(name(fault.reason)) + ": " + quoted(fault.text);
+}
+
+Time WeekUnroller::unroll(Time time_of_week) {
+  if (last_) {
+    const Duration step = time_of_week - *last_;
+    if (step < -kWeek + 2 * kNearWeekEnd) offset_ += kWeek;
+    if (step > kWeek - 2 * kNearWeekEnd) offset_ -= kWeek;
+  }
+  last_ = time_of_week;
+  return time_of_week + offset_;
+}
+
+}  // namespace leeway

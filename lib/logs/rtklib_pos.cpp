@@ -1,0 +1,271 @@
+#include "lib/logs/rtklib_pos.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "leeway/earth/error.hpp"
+#include "leeway/earth/rotation.hpp"
+#include "lib/logs/csv_header.hpp"
+#include "lib/logs/log_columns.hpp"
+
+namespace leeway {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kLeapSeconds = 18s;
+constexpr std::chrono::sys_days kLeapSecondsFrom = std::chrono::year{2017} / 1 / 1;
+constexpr std::chrono::sys_days kGpsEpoch = std::chrono::year{1980} / 1 / 6;
+
+// Slots: three components each; covariances in the file's order.
+enum Slot {
+  kPosition = 0,
+  kSigma = 3,
+  kCovariance = 6,
+  kVelocity = 9,
+  kVelocitySigma = 12,
+  kVelocityCovariance = 15,
+  kMinutes = 18,
+  kSeconds = 20,
+  kRtklibSlots = 22
+};
+
+constexpr Column optional(int slot) { return {slot, -kMaxSigma, kMaxSigma, true}; }
+constexpr Column coordinate(int slot, double limit) { return {slot, -limit, limit}; }
+
+constexpr std::array kGeodeticPosition{NamedColumn{"latitude", coordinate(kPosition, 90.0)},
+                                       NamedColumn{"longitude", coordinate(kPosition + 1, 360.0)},
+                                       NamedColumn{"height", coordinate(kPosition + 2, 1e5)},
+                                       NamedColumn{"sdn", sigma_column(kSigma)},
+                                       NamedColumn{"sde", sigma_column(kSigma + 1)},
+                                       NamedColumn{"sdu", sigma_column(kSigma + 2)}};
+constexpr std::array kEcefPosition{NamedColumn{"x-ecef", coordinate(kPosition, 1e7)},
+                                   NamedColumn{"y-ecef", coordinate(kPosition + 1, 1e7)},
+                                   NamedColumn{"z-ecef", coordinate(kPosition + 2, 1e7)},
+                                   NamedColumn{"sdx", sigma_column(kSigma)},
+                                   NamedColumn{"sdy", sigma_column(kSigma + 1)},
+                                   NamedColumn{"sdz", sigma_column(kSigma + 2)}};
+
+// RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
+constexpr std::array kGeodeticRest{NamedColumn{"sdne", optional(kCovariance)},
+                                   NamedColumn{"sdeu", optional(kCovariance + 1)},
+                                   NamedColumn{"sdun", optional(kCovariance + 2)},
+                                   NamedColumn{"sdue", optional(kCovariance + 2)},
+                                   NamedColumn{"vn", optional(kVelocity)},
+                                   NamedColumn{"ve", optional(kVelocity + 1)},
+                                   NamedColumn{"vu", optional(kVelocity + 2)},
+                                   NamedColumn{"sdvn", optional(kVelocitySigma)},
+                                   NamedColumn{"sdve", optional(kVelocitySigma + 1)},
+                                   NamedColumn{"sdvu", optional(kVelocitySigma + 2)},
+                                   NamedColumn{"sdvne", optional(kVelocityCovariance)},
+                                   NamedColumn{"sdveu", optional(kVelocityCovariance + 1)},
+                                   NamedColumn{"sdvun", optional(kVelocityCovariance + 2)}};
+constexpr std::array kEcefRest{NamedColumn{"sdxy", optional(kCovariance)},
+                               NamedColumn{"sdyz", optional(kCovariance + 1)},
+                               NamedColumn{"sdzx", optional(kCovariance + 2)},
+                               NamedColumn{"vx", optional(kVelocity)},
+                               NamedColumn{"vy", optional(kVelocity + 1)},
+                               NamedColumn{"vz", optional(kVelocity + 2)},
+                               NamedColumn{"sdvx", optional(kVelocitySigma)},
+                               NamedColumn{"sdvy", optional(kVelocitySigma + 1)},
+                               NamedColumn{"sdvz", optional(kVelocitySigma + 2)},
+                               NamedColumn{"sdvxy", optional(kVelocityCovariance)},
+                               NamedColumn{"sdvyz", optional(kVelocityCovariance + 1)},
+                               NamedColumn{"sdvzx", optional(kVelocityCovariance + 2)}};
+
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+Eigen::Vector3d vector_at(std::span<const double> values, int slot) {
+  return Eigen::Map<const Eigen::Vector3d>(values.data() + slot);
+}
+
+// RTKLIB prints a covariance as its square root with the covariance's sign.
+double signed_square(double value) { return std::copysign(value * value, value); }
+
+// Three standard deviations and the covariances 01, 12, 20 of the same axes.
+Eigen::Matrix3d covariance(std::span<const double> values, int sigma_slot, int covariance_slot) {
+  const Eigen::Matrix3d R = vector_at(values, sigma_slot).cwiseAbs2().asDiagonal();
+  const Eigen::Vector3d c = vector_at(values, covariance_slot).unaryExpr(&signed_square);
+  if (!c.allFinite()) return R;
+  Eigen::Matrix3d full = R;
+  full(0, 1) = full(1, 0) = c[0];
+  full(1, 2) = full(2, 1) = c[1];
+  full(2, 0) = full(0, 2) = c[2];
+  return full.llt().info() == Eigen::Success ? full : R;
+}
+
+bool has_velocity(std::span<const double> values) {
+  return vector_at(values, kVelocity).allFinite() &&
+         (vector_at(values, kVelocitySigma).array() > 0.0).all();
+}
+
+double degrees(std::span<const double> values, int axis) {
+  const auto at = [&](int slot) { return values[static_cast<std::size_t>(slot + axis)]; };
+  const double magnitude = std::abs(at(kPosition)) + at(kMinutes) / 60.0 + at(kSeconds) / 3600.0;
+  return std::copysign(magnitude, at(kPosition));  // the sign of -0 33 00 is on the zero
+}
+
+void set_from_ecef(std::span<const double> values, GnssFix& fix) {
+  fix.position =
+      GnssPosition{vector_at(values, kPosition), covariance(values, kSigma, kCovariance)};
+  fix.velocity.reset();
+  if (!has_velocity(values)) return;
+  fix.velocity = GnssVelocity{vector_at(values, kVelocity),
+                              covariance(values, kVelocitySigma, kVelocityCovariance)};
+}
+
+void set_from_geodetic(std::span<const double> values, GnssFix& fix) {
+  const Geodetic place{degrees(values, 0) * kRadPerDeg, degrees(values, 1) * kRadPerDeg,
+                       values[kPosition + 2]};
+  const Eigen::Matrix3d C_nu = Eigen::Vector3d(1.0, 1.0, -1.0).asDiagonal();  // u: north-east-up
+  fix.position =
+      GnssPosition::from_geodetic(place, C_nu * covariance(values, kSigma, kCovariance) * C_nu);
+  fix.velocity.reset();
+  if (!has_velocity(values)) return;
+  fix.velocity =
+      GnssVelocity::from_ned(place, C_nu * vector_at(values, kVelocity),
+                             C_nu * covariance(values, kVelocitySigma, kVelocityCovariance) * C_nu);
+}
+
+bool is_separator(char c) { return c == ' ' || c == ',' || c == ';' || c == '\t'; }
+
+const char* skip_separators(const char* p, const char* end) {
+  return std::find_if_not(p, end, is_separator);
+}
+
+// A whole number and the character behind it; false when either is missing.
+bool parse_part(const char*& p, const char* end, char behind, int& value) {
+  p = std::find_if_not(p, end, [](char c) { return c == ' '; });
+  const auto [after, error] = std::from_chars(p, end, value);
+  if (error != std::errc{} || after == end || *after != behind) return false;
+  p = after + 1;
+  return true;
+}
+
+// "yyyy/mm/dd hh:mm:" from the year on, as the time since the epoch of GPS.
+std::optional<LineDamage> parse_date(const char*& p, const char* end, int year, Duration& time) {
+  int month = 0, day = 0, hour = 0, minute = 0;
+  if (!parse_part(p, end, '/', month) || !parse_part(p, end, ' ', day) ||
+      !parse_part(p, end, ':', hour) || !parse_part(p, end, ':', minute)) {
+    return LineDamage::kNotANumber;
+  }
+  if (month < 1 || month > 12 || day < 1 || day > 31) return LineDamage::kOutOfRange;
+  const std::chrono::year_month_day date{std::chrono::year{year},
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok() || year < 1980 || year >= 2200) return LineDamage::kOutOfRange;
+  if (hour < 0 || hour > 23 || minute < 0 || minute > 59) return LineDamage::kOutOfRange;
+  time = std::chrono::sys_days(date) - kGpsEpoch + std::chrono::hours{hour} +
+         std::chrono::minutes{minute};
+  return std::nullopt;
+}
+
+// The part of an epoch before its seconds: a date with hours and minutes, or a GPS week.
+std::optional<LineDamage> parse_day_or_week(const char*& p, const char* end, Duration& time) {
+  int number = 0;
+  const auto [after, error] = std::from_chars(p, end, number);
+  if (error != std::errc{} || after == end) return LineDamage::kNotANumber;
+  p = after + 1;
+  if (*after == '/') return parse_date(p, end, number, time);
+  if (!is_separator(*after)) return LineDamage::kNotANumber;
+  if (number < 0 || number > kLastGpsWeek) return LineDamage::kOutOfRange;
+  time = std::chrono::weeks{number};
+  return std::nullopt;
+}
+
+}  // namespace
+
+void RtklibParser::read_header(std::string_view line, const std::string& path) {
+  if (contains(line, "baseline=") || contains(line, "e-baseline(")) {
+    throw Error(path +
+                ": holds an e/n/u baseline; set the RTKLIB option out-solformat to llh or xyz");
+  }
+  if (contains(line, "lat/lon/height=") && !contains(line, "=WGS84/ellipsoidal")) {
+    throw Error(path +
+                ": its positions are not WGS-84 with ellipsoidal height; set the RTKLIB "
+                "option out-height to ellipsoidal");
+  }
+  if (contains(line, "latitude(") || contains(line, "x-ecef(")) read_columns(line, path);
+}
+
+void RtklibParser::read_columns(std::string_view line, const std::string& path) {
+  auto titles = split_fields(line.substr(line.find('%') + 1), Separator::kRuns);
+  is_utc_ = titles.front() == "UTC" || titles.front() == "JST";
+  to_gps_ = is_utc_ ? kLeapSeconds : Duration{0};
+  if (titles.front() == "JST") to_gps_ -= 9h;
+  is_ecef_ = contains(line, "x-ecef(");
+  const bool is_dms = contains(line, "latitude(d'");
+  // The names without their units, as a CSV header whose fields parse() then finds.
+  std::string names;
+  for (auto title = titles.begin() + 1; title != titles.end(); ++title) {
+    const std::string name(title->substr(0, title->find('(')));
+    names += name + ",";
+    if (is_dms && name.ends_with("itude")) names += name + "_min," + name + "_s,";
+  }
+  CsvHeader header(names, path);
+  const std::span<const NamedColumn> position = is_ecef_ ? kEcefPosition : kGeodeticPosition;
+  if (const auto missing = header.missing(position); !missing.empty()) {
+    throw Error(path + ": missing columns " + join(missing) + " in its RTKLIB header");
+  }
+  header.use(position);
+  header.use(is_ecef_ ? std::span<const NamedColumn>(kEcefRest) : kGeodeticRest);
+  if (is_dms) {
+    header.use(std::array{NamedColumn{"latitude_min", {kMinutes, 0.0, 60.0}},
+                          NamedColumn{"latitude_s", {kSeconds, 0.0, 60.0}},
+                          NamedColumn{"longitude_min", {kMinutes + 1, 0.0, 60.0}},
+                          NamedColumn{"longitude_s", {kSeconds + 1, 0.0, 60.0}}});
+  }
+  fields_ = header.parser(Separator::kRuns);
+  has_columns_ = true;
+}
+
+std::optional<Fault> RtklibParser::operator()(std::string_view line, GnssFix& fix) const {
+  if (auto fault = parse_epoch(line, fix.time)) return fault;
+  std::array<double, kRtklibSlots>
+      values{};  // minutes and seconds stay zero where degrees are decimal
+  std::fill(values.begin() + kCovariance, values.begin() + kMinutes,
+            std::numeric_limits<double>::quiet_NaN());
+  Time unused{};
+  if (auto fault = fields_.parse(line, unused, values)) return fault;
+  if (is_ecef_) {
+    set_from_ecef(values, fix);
+  } else {
+    set_from_geodetic(values, fix);
+  }
+  return std::nullopt;
+}
+
+// On success the line goes on behind its time.
+std::optional<Fault> RtklibParser::parse_epoch(std::string_view& line, Time& time) const {
+  const char* const begin = skip_separators(line.data(), line.data() + line.size());
+  const char* const end = line.data() + line.size();
+  const char* p = begin;
+  Duration since_epoch{0};
+  auto damage = parse_day_or_week(p, end, since_epoch);
+  Time seconds{};
+  if (!damage) p = skip_separators(p, end);
+  if (!damage) damage = parse_time(p, end, seconds);
+  if (!damage && p != end && !is_separator(*p)) damage = LineDamage::kNotANumber;
+  since_epoch += seconds.time_since_epoch();
+  if (!damage && is_utc_ && since_epoch < kLeapSecondsFrom - kGpsEpoch) {
+    damage = LineDamage::kOutOfRange;
+  }
+  if (damage) {
+    constexpr std::size_t kTimeBytes = 24;
+    return Fault{*damage, line.substr(static_cast<std::size_t>(begin - line.data()), kTimeBytes)};
+  }
+  time = Time{since_epoch + to_gps_};
+  line.remove_prefix(static_cast<std::size_t>(p - line.data()));
+  return std::nullopt;
+}
+
+}  // namespace leeway

@@ -1,0 +1,250 @@
+#include "leeway/sim/analysis/covariance_analysis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "leeway/earth/error.hpp"
+#include "leeway/model/gnss_measurement.hpp"
+#include "sim/analysis/scene_covariance.hpp"
+
+namespace leeway::sim {
+namespace {
+
+using Moment = CovariancePoint::Moment;
+using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then true
+
+constexpr double kSettledRelative = 1e-3;
+
+constexpr std::array<std::string_view, 15> kSourceNames{"initial",
+                                                        "accelerometer_bias",
+                                                        "accelerometer_drift",
+                                                        "accelerometer_noise",
+                                                        "accelerometer_scale",
+                                                        "accelerometer_misalignment",
+                                                        "gyro_bias",
+                                                        "gyro_drift",
+                                                        "gyro_noise",
+                                                        "gyro_scale",
+                                                        "gyro_misalignment",
+                                                        "gyro_g_sensitivity",
+                                                        "gnss_position",
+                                                        "gnss_correlated",
+                                                        "gnss_velocity"};
+
+/// A step must resolve the sensors' in-run drift.
+double step_limit_s(const ImuErrorModel& imu) {
+  double shortest_s = std::numeric_limits<double>::infinity();
+  for (const TriadErrorModel* triad : {&imu.accelerometer, &imu.gyro}) {
+    if (triad->in_run.sigma > 0.0) shortest_s = std::min(shortest_s, triad->in_run.tau_s);
+  }
+  return std::max(0.1 * shortest_s, 0.01);
+}
+
+/// The extremes of a stretch of the scene.
+struct Window {
+  long index{-1};  // counted back from the end
+  int fixes{0};
+  double claimed_sum_m2{0.0};
+  double true_sum_m2{0.0};
+  Variances largest{Variances::Zero()};
+  CovarianceAnalysis result{};
+};
+
+class Analysis {
+ public:
+  Analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config)
+      : scene_(scene),
+        track_(track),
+        config_(config),
+        pair_(scene, config.by_source),
+        window_s_(scored_part_s(scene)),
+        sigma_(fix_variance(scene.gnss.errors).cwiseSqrt()) {}
+
+  CovarianceAnalysis run() {
+    for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
+      const double arrival_s = t_s + scene_.gnss.latency_s;
+      if (arrival_s > scene_.duration_s) break;
+      now_s_ = advance(pair_, now_s_, t_s);
+      enter_window(arrival_s);
+      score(arrival_s);
+      update();
+    }
+    if (config_.observer) advance(pair_, now_s_, scene_.duration_s);
+    return finished();
+  }
+
+ private:
+  double advance(SceneCovariance& pair, double from_s, double to_s) const {
+    while (from_s < to_s) {
+      const Leg leg = track_.leg(from_s, to_s);
+      pair.propagate(leg);
+      from_s = leg.end_s;
+      const bool on_the_way = &pair == &pair_ && from_s < to_s;
+      if (on_the_way && config_.observer) config_.observer(point(pair, from_s, Moment::kBetween));
+    }
+    return to_s;
+  }
+
+  CovariancePoint point(const SceneCovariance& pair, double t_s, Moment moment) const {
+    return {t_s, moment, truth_at(scene_.trajectory, t_s).nav.r_e_m, pair.claimed(), pair.truth()};
+  }
+
+  /// The error at the arrival of the fix of now, before it is used.
+  void score(double arrival_s) {
+    Variances variances;
+    variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
+    window_.largest = window_.largest.max(variances);
+    // Of the earlier windows nothing but their repetition counts.
+    if (window_.index > 0 && !config_.observer) return;
+    if (arrival_s == now_s_) {
+      score(pair_, now_s_);
+    } else {
+      SceneCovariance ahead = pair_;
+      score(ahead, advance(ahead, now_s_, arrival_s));
+    }
+  }
+
+  void score(const SceneCovariance& pair, double t_s) {
+    const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
+    if (config_.observer) config_.observer(before);
+    if (window_.index > 0) return;
+    const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(before.r_e_m));
+    const auto horizontal = [&](const ErrorMatrix& P) -> Eigen::Matrix2d {
+      return C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>();
+    };
+    const Eigen::Matrix2d claimed = horizontal(before.claimed);
+    const Eigen::Matrix2d truth = horizontal(before.truth);
+    ++window_.fixes;
+    window_.claimed_sum_m2 += claimed.trace();
+    window_.true_sum_m2 += truth.trace();
+    CovarianceAnalysis& r = window_.result;
+    r.claimed_m = std::max(r.claimed_m, horizontal_error_m(scene_.budget.metric, claimed));
+    const double true_m = horizontal_error_m(scene_.budget.metric, truth);
+    if (true_m <= r.true_m) return;
+    r.true_m = true_m;
+    r.worst_s = t_s;
+    r.worst = before;
+    if (config_.by_source) r.budget = pair.budget(C_en);
+  }
+
+  void enter_window(double t_s) {
+    // A fix on the border of two counts for the later one.
+    const double windows_left = (scene_.duration_s - t_s) / window_s_;
+    const auto index = std::max(0L, static_cast<long>(std::ceil(windows_left - 1e-9)) - 1);
+    if (index == window_.index) return;
+    if (window_.index >= 0) {
+      compare_with_previous();
+      previous_ = window_.largest;
+    }
+    window_ = Window{};
+    window_.index = index;
+  }
+
+  void compare_with_previous() {
+    // Variances change twice as much as sigmas.
+    const bool repeats =
+        previous_ &&
+        ((window_.largest - *previous_).abs() <= 2.0 * kSettledRelative * *previous_).all();
+    if (!repeats) settled_s_.reset();
+    if (repeats && !settled_s_) settled_s_ = now_s_;
+  }
+
+  CovarianceAnalysis finished() {
+    if (window_.index != 0) {
+      throw Error("scene '" + scene_.name + "': no fix in its last " + std::to_string(window_s_) +
+                  " s: shorten the fix interval or move the outages");
+    }
+    compare_with_previous();
+    CovarianceAnalysis r = window_.result;
+    r.claimed_drms_m = std::sqrt(window_.claimed_sum_m2 / window_.fixes);
+    r.true_drms_m = std::sqrt(window_.true_sum_m2 / window_.fixes);
+    r.window_s = window_s_;
+    r.fixes = fixes_;
+    r.settled = settled_s_.has_value();
+    r.settled_s = settled_s_.value_or(scene_.duration_s);
+    return r;
+  }
+
+  void update() {
+    const TruthPoint truth = truth_at(scene_.trajectory, now_s_);
+    Estimate estimate;
+    estimate.nav = truth.nav;
+    const GnssFix fix{truth.nav.time, GnssPosition{}, GnssVelocity{}};
+    const Measurement m =
+        gnss_measurement(fix, estimate, scene_.filter.lever_arm_b_m, truth.omega_ib_b_radps);
+    const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
+    const double weight =
+        last_fix_s_ ? gnss_position_weight(now_s_ - *last_fix_s_, scene_.filter.gnss_correlation_s)
+                    : 1.0;
+    last_fix_s_ = now_s_;
+    ++fixes_;
+    for (int axis = 0; axis < 6; ++axis) {
+      const int first_row = axis < 3 ? 0 : 3;
+      ScalarGain gain;
+      gain.axis = axis;
+      gain.per_sigma = (axis < 3 ? weight : 1.0) / sigma_(axis);
+      gain.h = gain.per_sigma * (C_ne.row(axis % 3) * m.H.middleRows<3>(first_row)).transpose();
+      pair_.update(gain);
+    }
+    if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
+  }
+
+  const Scene& scene_;
+  const ErrorTrack& track_;
+  const CovarianceConfig& config_;
+  SceneCovariance pair_;
+  double window_s_;
+  Eigen::Matrix<double, 6, 1> sigma_;  // of the fixes, as the filter is told
+  double now_s_{0.0};
+  std::optional<double> last_fix_s_{};
+  std::size_t fixes_{0};
+  Window window_{};
+  std::optional<Variances> previous_{};
+  std::optional<double> settled_s_{};
+};
+
+/// From a perfect start: the biases are all there is.
+Scene perfectly_started(const Scene& scene) {
+  Scene perfect = scene;
+  perfect.initial = InitialSigma{};
+  return perfect;
+}
+
+}  // namespace
+
+std::string_view name(ErrorSource source) { return kSourceNames[static_cast<std::size_t>(source)]; }
+
+ErrorTrack error_track(const Scene& scene, double step_s) {
+  const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
+  return {scene.trajectory,
+          scene.duration_s,
+          {std::min(step_s, step_limit_s(scene.imu)), TruthModel::needs_parameters(scene.imu),
+           noise.tau_a_s, noise.tau_g_s}};
+}
+
+void free_inertial(const Scene& scene, const ErrorTrack& track,
+                   const std::function<bool(const CovariancePoint&)>& observer) {
+  validate(scene);
+  SceneCovariance pair(perfectly_started(scene), false);
+  CovariancePoint point;
+  do {
+    const Leg leg = track.leg(point.t_s, scene.duration_s);
+    pair.propagate(leg);
+    point.t_s = leg.end_s;
+    point.r_e_m = truth_at(scene.trajectory, leg.end_s).nav.r_e_m;
+    point.claimed = pair.claimed();
+    point.truth = pair.truth();
+  } while (observer(point) && point.t_s < scene.duration_s);
+}
+
+CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
+                           const CovarianceConfig& config) {
+  validate(scene);
+  return Analysis(scene, track, config).run();
+}
+
+}  // namespace leeway::sim

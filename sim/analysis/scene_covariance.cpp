@@ -1,0 +1,53 @@
+#include "sim/analysis/scene_covariance.hpp"
+
+namespace leeway::sim {
+namespace {
+
+Estimate start_of(const Scene& scene) {
+  Estimate start;
+  start.nav = truth_at(scene.trajectory, 0.0).nav;
+  return start;
+}
+
+ErrorMatrix without_biases(ErrorMatrix P) {
+  P.bottomRightCorner<6, 6>().setZero();
+  return P;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors) {
+  Eigen::Matrix<double, 6, 1> variance;
+  variance.head<3>() =
+      errors.position_sigma_n_m.cwiseAbs2() + errors.correlated_sigma_n_m.cwiseAbs2();
+  variance.tail<3>() = errors.velocity_sigma_n_mps.cwiseAbs2();
+  return variance;
+}
+
+SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
+    : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
+      P_(initial_covariance(start_of(scene), initial_sigma(scene), scene.filter.imu,
+                            scene.filter.biases)),
+      truth_(std::in_place, scene, without_biases(P_), noise_, by_source) {
+  const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
+  if (fixes_as_white && truth_->is_known_to(P_, noise_, fix_variance(scene.gnss.errors))) {
+    truth_.reset();
+  }
+}
+
+void SceneCovariance::propagate(const Leg& leg) {
+  leeway::propagate(P_, leg.Phi, noise_);
+  if (truth_) truth_->propagate(leg);
+}
+
+void SceneCovariance::update(ScalarGain& gain) {
+  if (truth_) {
+    const ErrorVector cross = P_ * gain.h;
+    gain.K = cross / (gain.h.dot(cross) + 1.0);
+    truth_->update(gain);
+  }
+  ErrorVector none = ErrorVector::Zero();
+  scalar_update(P_, none, gain.h, 0.0);
+}
+
+}  // namespace leeway::sim

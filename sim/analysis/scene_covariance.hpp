@@ -1,0 +1,38 @@
+/// @file
+/// The covariance that a scene's filter claims and the true one, side by side. Part of
+/// covariance_analysis.
+#pragma once
+
+#include <optional>
+
+#include "sim/analysis/truth_model.hpp"
+
+namespace leeway::sim {
+
+/// Variances of a fix by axis, as the receiver reports them: position north, east, down, then
+/// velocity.
+Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors);
+
+class SceneCovariance {
+ public:
+  /// At the scene's start. @param by_source  keeps the sources apart, for budget()
+  SceneCovariance(const Scene& scene, bool by_source);
+
+  void propagate(const Leg& leg);
+
+  /// Sets the gain to the filter's and applies it.
+  void update(ScalarGain& gain);
+
+  const ErrorMatrix& claimed() const { return P_; }
+  ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
+
+  /// @pre made by source.
+  ErrorBudget budget(const Eigen::Matrix3d& C_en) const { return truth_->budget(C_en); }
+
+ private:
+  ProcessNoise noise_;
+  ErrorMatrix P_;
+  std::optional<TruthModel> truth_;  // none: the filter knows all there is, P is the truth
+};
+
+}  // namespace leeway::sim

@@ -1,0 +1,106 @@
+#include <memory>
+
+#include "leeway/sim/motion/trajectories.hpp"
+#include "sim/atlas/estimator_scenes.hpp"
+#include "sim/atlas/trials.hpp"
+#include "sim/atlas/watched_kernel_ekf.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kGainSettledS = 60.0;
+
+/// A kernel whose gain leaves attitude and gyro bias alone: what is done to keep a filter from
+/// learning what it cannot know.
+template <UpdateForm form>
+class EditedGainKernel {
+ public:
+  using Number = double;
+
+  explicit EditedGainKernel(const ErrorMatrix& P) : P_(P) {}
+  ErrorMatrix matrix() const { return P_; }
+  void propagate(const Transition& Phi, const ProcessNoise& noise) {
+    leeway::propagate(P_, Phi, noise);
+  }
+
+  double update(ErrorVector& x_hat, const ErrorVector& h, double z) {
+    const double variance = h.dot(P_ * h) + 1.0;
+    ErrorVector K = P_ * h / variance;
+    K.segment<3>(kPsi).setZero();
+    K.segment<3>(kBg).setZero();
+    x_hat += (z - h.dot(x_hat)) * K;
+    const ErrorMatrix left = ErrorMatrix::Identity() - K * h.transpose();
+    if constexpr (form == UpdateForm::kJoseph) {
+      P_ = (left * P_ * left.transpose()).eval() + K * K.transpose();
+    } else {
+      P_ = (left * P_).eval();
+    }
+    P_ = (0.5 * (P_ + P_.transpose())).eval();
+    return variance;
+  }
+
+  double update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z) {
+    return update_in_sequence(*this, x_hat, H, z);
+  }
+
+ private:
+  ErrorMatrix P_;
+};
+
+template <UpdateForm form>
+AtlasColumn edited_column(const std::string& name) {
+  return {AtlasGroup::kNotOffered, name, [](const EkfConfig& config, const TrialStart& start) {
+            using Filter = KernelEkf<EditedGainKernel<form>>;
+            return std::make_unique<WatchedKernelEkf<Filter>>(
+                Filter(config, start.estimate, EditedGainKernel<form>(start.P)), config.imu);
+          }};
+}
+
+/// What the library offers for it: a Schmidt update.
+AtlasColumn held_column() {
+  return {AtlasGroup::kEkf, "Ekf with heading held",
+          [](const EkfConfig& config, const TrialStart& start) {
+            return watched(Ekf(config, start.estimate, start.P), {.held = Held::kHeadingAndTurn});
+          }};
+}
+
+Scene turning_drive() {
+  Scene scene;
+  scene.name = "a gain edited by hand";
+  scene.duration_s = 120.0;
+  scene.trajectory = circle({.duration_s = scene.duration_s});
+  scene.imu_rate_hz = 20.0;
+  set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial =
+      InitialSigma{.tilt_rad = 1e-3, .heading_rad = 5e-3, .velocity_mps = 0.1, .position_m = 2.5};
+  return scene;
+}
+
+double error_over_claim_of_all(WatchedFilter& filter, const RecordedTrial& trial) {
+  return errors_after(filter, trial, kGainSettledS).sigma_ratio();
+}
+
+std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {
+  const Scene scene = turning_drive();
+  std::vector<AtlasColumn> columns = few_atlas_columns();
+  std::erase_if(columns, [](const AtlasColumn& c) { return c.group == AtlasGroup::kReset; });
+  columns.push_back(held_column());
+  columns.push_back(edited_column<UpdateForm::kJoseph>("edited gain in Joseph's form"));
+  columns.push_back(edited_column<UpdateForm::kSimple>("edited gain in the short form"));
+  return scored(columns, scene.filter, recorded_trials(scene, options.brief ? 4 : 20), {},
+                error_over_claim_of_all);
+}
+
+}  // namespace
+
+AtlasScene edited_gain() {
+  return {"edited-gain",
+          "A gain edited by hand",
+          "errors over claims: root of NEES over 15",
+          "",
+          {1.3, 2.0, "of 1, by how much few trials scatter; at 2 the claim of 95 % is one of 67 %"},
+          run_edited_gain};
+}
+
+}  // namespace leeway::sim

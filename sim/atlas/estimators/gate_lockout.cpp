@@ -1,0 +1,48 @@
+#include "leeway/sim/motion/trajectories.hpp"
+#include "sim/atlas/estimator_scenes.hpp"
+#include "sim/atlas/trials.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kShockS = 60.0;       // for one second from here ..
+constexpr double kShockMps2 = 50.0;    // .. the accelerometers read so much too much
+constexpr double kRecoveredS = 120.0;  // when the filter should be right again
+
+Scene drive_with_shock() {
+  return car_grade_scene("a shock that the accelerometers take for motion",
+                         circle({.duration_s = 150.0}), 150.0, 50.0);
+}
+
+void add_shock(RecordedTrial& trial) {
+  for (ImuIncrement& inc : trial.imu) {
+    const double t_s = to_seconds(inc.time);
+    if (t_s > kShockS && t_s < kShockS + 1.0) inc.dv_b_mps.x() += kShockMps2 * inc.dt_s;
+  }
+}
+
+double error_afterwards_m(WatchedFilter& filter, const RecordedTrial& trial) {
+  return errors_after(filter, trial, kRecoveredS).horizontal_rms_m();
+}
+
+std::vector<AtlasCell> run_gate_lockout(const AtlasOptions& options) {
+  const Scene scene = drive_with_shock();
+  auto trials = recorded_trials(scene, options.brief ? 2 : 8);
+  for (RecordedTrial& trial : trials) add_shock(trial);
+  return scored(few_atlas_columns(), scene.filter, trials, {}, error_afterwards_m);
+}
+
+}  // namespace
+
+AtlasScene gate_lockout() {
+  return {"gate-lockout",
+          "A gate that refuses right fixes",
+          "RMS horizontal error before fixes, from a minute after the shock",
+          "m",
+          {8.0, 80.0,
+           "fixes of 2.5 m every second keep an unhurt filter within 3 sigma; ten times as much is "
+           "of no use on a road"},
+          run_gate_lockout};
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,75 @@
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "leeway/sim/motion/trajectories.hpp"
+#include "sim/atlas/estimator_scenes.hpp"
+#include "sim/atlas/trials.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kSettleS = 300.0;
+constexpr double kCoastS = 3600.0;
+constexpr double kStaleFixM = 1.0;
+
+/// Five minutes of fixes, an hour of none, then 20 fixes.
+Scene hour_without_fixes() {
+  Scene scene;
+  scene.name = "an hour of coasting";
+  scene.duration_s = kSettleS + kCoastS + 20.0;
+  // A lap a minute: the motion of one is all there is to compute.
+  constexpr double kRadiusM = 200.0;
+  scene.trajectory = circle({.radius_m = kRadiusM,
+                             .speed_mps = 2.0 * std::numbers::pi * kRadiusM / 60.0,
+                             .duration_s = scene.duration_s});
+  scene.imu_rate_hz = 10.0;
+  set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kHigh));
+  scene.gnss.errors.position_sigma_n_m.setConstant(kStaleFixM);
+  scene.gnss.outages = {{kSettleS, kCoastS}};
+  scene.filter.gnss_correlation_s = 0.0;
+  scene.initial = InitialSigma{
+      .tilt_rad = 1e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = kStaleFixM};
+  return scene;
+}
+
+/// So long after the first of the late fixes.
+double error_after_late_fix_m(WatchedFilter& filter, const RecordedTrial& trial, double after_s) {
+  const double t0_s = kSettleS + kCoastS + 1.0 + after_s;
+  ErrorSums sums;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    if (std::abs(to_seconds(truth.nav.time) - t0_s) < 0.5) sums.add(truth, now);
+  });
+  return sums.horizontal_rms_m();
+}
+
+std::vector<AtlasCell> run_stale_covariance(const AtlasOptions& options) {
+  const Scene scene = hour_without_fixes();
+  const auto trials = recorded_trials(scene, options.brief ? 1 : 8);
+  std::vector<AtlasCell> cells;
+  for (const double after_s : {1.0, 19.0}) {
+    const std::string condition = std::to_string(std::lround(after_s)) + " s later";
+    const auto score = [after_s](WatchedFilter& filter, const RecordedTrial& trial) {
+      return error_after_late_fix_m(filter, trial, after_s);
+    };
+    for (AtlasCell& cell : scored(few_atlas_columns(), scene.filter, trials, condition, score)) {
+      cells.push_back(std::move(cell));
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene stale_covariance() {
+  return {"stale-covariance",
+          "One fix after an hour of coasting",
+          "horizontal error after the first late fix",
+          "m",
+          {4.0, 100.0,
+           "three sigma of a 1 m fix and a second of motion; at 100 m the fix did not bring the "
+           "estimate back"},
+          run_stale_covariance};
+}
+
+}  // namespace leeway::sim

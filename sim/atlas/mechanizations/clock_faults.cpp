@@ -1,0 +1,102 @@
+#include "leeway/ekf/ekf.hpp"
+#include "sim/atlas/mechanization_scenes.hpp"
+#include "sim/atlas/town_drive.hpp"
+
+namespace leeway::sim {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::seconds;
+
+constexpr double kClockDriveS = 120.0;
+constexpr double kClockScoredS = 30.0;
+constexpr Duration kWeekLength = hours{7 * 24};
+constexpr Time kFaultAt{seconds{30}};
+
+/// Moves times of the IMU and of the fixes.
+Spoil moved_times(Time (*imu)(Time), Time (*receiver)(Time)) {
+  return [imu, receiver](RecordedTrial& trial) {
+    trial.start.estimate.nav.time = imu(trial.start.estimate.nav.time);
+    for (ImuIncrement& inc : trial.imu) inc.time = imu(inc.time);
+    for (RecordedTrial::Fix& fix : trial.fixes) fix.fix.time = receiver(fix.fix.time);
+  };
+}
+
+Time same(Time t) { return t; }
+Time one_wild(Time t) { return t == kFaultAt ? t + seconds{1000} : t; }
+Time hour_ahead(Time t) { return t > kFaultAt ? t + hours{1} : t; }
+Time hour_back(Time t) { return t > kFaultAt ? t - hours{1} : t; }
+Time leap_seconds_ahead(Time t) { return t + seconds{18}; }
+Time leap_seconds_back(Time t) { return t - seconds{18}; }
+
+/// Seconds of week, which begin anew at the fault.
+Time rolled(Time t) {
+  const Time of_week = t + kWeekLength - kFaultAt.time_since_epoch();
+  return of_week.time_since_epoch() >= kWeekLength ? of_week - kWeekLength : of_week;
+}
+
+struct ClockFault {
+  const char* condition;
+  Spoil spoil;
+};
+
+std::vector<ClockFault> faults() {
+  return {{"none", moved_times(same, same)},
+          {"one IMU time 1000 s ahead", moved_times(one_wild, same)},
+          {"all clocks jump an hour ahead", moved_times(hour_ahead, hour_ahead)},
+          {"all clocks jump an hour back", moved_times(hour_back, hour_back)},
+          {"the week of all rolls over", moved_times(rolled, rolled)},
+          {"the receiver's clock 18 s ahead", moved_times(same, leap_seconds_ahead)},
+          {"the receiver's clock 18 s behind", moved_times(same, leap_seconds_back)}};
+}
+
+/// Takes times for what they say: each sample lasts from the time of the one before to its own.
+void trust_times(RecordedTrial& trial) {
+  Time before = trial.start.estimate.nav.time;
+  for (ImuIncrement& inc : trial.imu) {
+    const double scale = to_seconds(inc.time - before) / inc.dt_s;
+    before = inc.time;
+    inc.dt_s *= scale;
+    inc.dtheta_b_rad *= scale;
+    inc.dv_b_mps *= scale;
+  }
+}
+
+AtlasColumn times_trusted() {
+  return {AtlasGroup::kNotOffered, "Ekf/times trusted",
+          [](const EkfConfig& config, const TrialStart& start) {
+            return watched(Ekf(config, start.estimate, start.P));
+          }};
+}
+
+std::vector<AtlasCell> run_clock_faults(const AtlasOptions& options) {
+  const Scene scene = town_drive(kClockDriveS);
+  const auto trials = recorded_trials(scene, options.brief ? 1 : 3);
+  const Score score = late_horizontal_rms_m(scene, kClockScoredS);
+  std::vector<AtlasCell> cells;
+  for (const ClockFault& fault : faults()) {
+    const auto spoilt = spoiled(trials, fault.spoil);
+    const auto add = [&](const AtlasColumn& column, const std::vector<RecordedTrial>& inputs) {
+      for (const AtlasCell& cell : scored({column}, scene.filter, inputs, fault.condition, score)) {
+        cells.push_back(cell);
+      }
+    };
+    add(few_atlas_columns().front(), spoilt);
+    add(times_trusted(), spoiled(spoilt, trust_times));
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene clock_faults() {
+  return {"clock",
+          "Clocks that jump, and the end of a week",
+          "RMS horizontal error before fixes, from a minute after the fault on",
+          "m",
+          {5.0, 50.0,
+           "fixes of 2.5 m alone, one second old, leave five; fifty are a coast without fixes"},
+          run_clock_faults};
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,61 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+
+#include "leeway/sim/compare/variant.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/sensors/true_increments.hpp"
+#include "sim/atlas/free_run.hpp"
+#include "sim/atlas/mechanization_scenes.hpp"
+
+namespace leeway::sim {
+namespace {
+
+/// Of the eight, which ends where it began; its body motions fit in with whole periods.
+constexpr Duration kLap = std::chrono::minutes{2};
+
+Trajectory endless_eight(double duration_s) {
+  Trajectory drive = manoeuvre_car();
+  drive.duration_s = duration_s;
+  drive.period_s = to_seconds(kLap);
+  return drive;
+}
+
+std::vector<AtlasCell> run_euler_hour(const AtlasOptions& options) {
+  constexpr std::array kSchemes{Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler,
+                                Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4};
+  const auto rates_hz =
+      options.brief ? std::vector{10.0, 100.0} : std::vector{10.0, 20.0, 50.0, 100.0, 200.0};
+  const Trajectory drive = endless_eight(3600.0);
+  const NavState start = truth_at(drive, 0.0).nav;
+  std::vector<AtlasCell> cells;
+  for (const double rate_hz : rates_hz) {
+    const TrueIncrements increments(drive, rate_hz, drive.duration_s, 1);
+    for (const Scheme scheme : kSchemes) {
+      double largest_m = 0.0;
+      const FreeRun run = free_run(start, increments, {scheme}, [&](const NavState& nav) {
+        const bool is_lap_done = nav.time.time_since_epoch() % kLap == Duration{};
+        if (is_lap_done) largest_m = std::max(largest_m, horizontal_error_m(start, nav));
+      });
+      cells.push_back({AtlasGroup::kStrapdown, std::string(name(scheme)),
+                       fmt::format("{:g} Hz", rate_hz), largest_m, run.reported});
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene euler_hour() {
+  return {
+      "euler-hour",
+      "An hour of explicit Euler",
+      "largest horizontal error in an hour without fixes, perfect sensors",
+      "m",
+      {185.2, 1852.0,
+       "a nautical mile an hour is a navigation-grade INS with all its sensors' errors; a tenth "
+       "of it does not show"},
+      run_euler_hour};
+}
+
+}  // namespace leeway::sim

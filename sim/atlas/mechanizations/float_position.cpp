@@ -1,0 +1,85 @@
+#include <spdlog/fmt/fmt.h>
+
+#include "leeway/sim/motion/trajectories.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
+#include "sim/atlas/free_run.hpp"
+#include "sim/atlas/mechanization_scenes.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kFloatRunS = 60.0;
+
+/// 20 m/s on a circle of 100 m: the reference vector circle20.
+const Trajectory& float_drive() {
+  static const Trajectory kDrive = circle20();
+  return kDrive;
+}
+
+/// What a step leaves in single precision.
+using Rounding = void (*)(NavState& nav, const NavState& start);
+
+void round_position(NavState& nav, const NavState&) {
+  nav.r_e_m = nav.r_e_m.cast<float>().cast<double>();
+}
+
+void round_position_and_velocity(NavState& nav, const NavState& start) {
+  round_position(nav, start);
+  nav.v_e_mps = nav.v_e_mps.cast<float>().cast<double>();
+}
+
+/// The position as single-precision metres from a place nearby.
+void round_offset(NavState& nav, const NavState& start) {
+  nav.r_e_m = start.r_e_m + (nav.r_e_m - start.r_e_m).cast<float>().cast<double>();
+}
+
+double rounded_run_error_m(const std::vector<ImuIncrement>& increments, Rounding rounding) {
+  const NavState start = truth_at(float_drive(), 0.0).nav;
+  NavState nav = start;
+  ImuHistory history;
+  for (const ImuIncrement& inc : increments) {
+    strapdown_step(nav, inc, history);
+    rounding(nav, start);
+  }
+  return horizontal_error_m(truth_at(float_drive(), kFloatRunS).nav, nav);
+}
+
+std::vector<AtlasCell> run_float_position(const AtlasOptions& options) {
+  const auto rates_hz =
+      options.brief ? std::vector{10.0, 100.0} : std::vector{1.0, 10.0, 50.0, 100.0, 400.0};
+  std::vector<AtlasCell> cells;
+  for (const double rate_hz : rates_hz) {
+    const auto increments = true_increments(float_drive(), rate_hz, kFloatRunS);
+    const std::string condition = fmt::format("{:g} Hz", rate_hz);
+    const FreeRun run = free_run(truth_at(float_drive(), 0.0).nav, increments, {});
+    cells.push_back({AtlasGroup::kStrapdown, "two-sample/double", condition,
+                     horizontal_error_m(truth_at(float_drive(), kFloatRunS).nav, run.nav),
+                     run.reported});
+    const auto rounded = [&](const char* variant, Rounding rounding) {
+      cells.push_back({AtlasGroup::kNotOffered,
+                       variant,
+                       condition,
+                       rounded_run_error_m(increments, rounding),
+                       {}});
+    };
+    rounded("position/float", round_position);
+    rounded("position and velocity/float", round_position_and_velocity);
+    rounded("offset from a place nearby/float", round_offset);
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene float_position() {
+  return {"float-position",
+          "Earth-fixed position in single precision",
+          "horizontal error after 60 s",
+          "m",
+          {0.1, 1.0,
+           "0.1 m is what no GNSS receiver without carrier phase would see; a metre after a minute "
+           "is what the sensors of a car-grade IMU cost"},
+          run_float_position};
+}
+
+}  // namespace leeway::sim

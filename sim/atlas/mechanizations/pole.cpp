@@ -1,0 +1,44 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+#include "leeway/earth/rotation.hpp"
+#include "sim/atlas/crossing.hpp"
+#include "sim/atlas/mechanization_scenes.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kFromPoleRad = 0.3 * kRadPerDeg;
+constexpr double kFromPoleM = kFromPoleRad * 6.4e6;
+
+/// From one side of the north pole to the other, past it at this distance.
+Scene past_pole(double distance_m) {
+  const double lat_rad = 90.0 * kRadPerDeg - kFromPoleRad;
+  const double lon_rad = 10.0 * kRadPerDeg;
+  const double half_turn_rad = 180.0 * kRadPerDeg - 2.0 * std::asin(distance_m / kFromPoleM);
+  return crossing({lat_rad, lon_rad, 11e3}, {lat_rad, wrap_pi(lon_rad + half_turn_rad), 11e3});
+}
+
+std::vector<AtlasCell> run_pole(const AtlasOptions& options) {
+  std::vector<AtlasCell> cells;
+  for (const double distance_m : {0.0, 10.0, 1e3, 10e3}) {
+    const Scene scene = past_pole(distance_m);
+    const std::string condition = fmt::format("past it at {:g} m", distance_m);
+    for (const AtlasCell& cell : crossed_without_fixes(scene, condition)) cells.push_back(cell);
+    cells.push_back(crossed_in_latitude_and_longitude(scene, condition, 0.0));
+    if (distance_m > 0.0) continue;
+    for (const AtlasCell& cell : crossed_with_fixes(scene, condition, options.brief ? 1 : 4)) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene pole() {
+  return {"pole", "Over the north pole", "error of the position", "m", crossing_limits(), run_pole};
+}
+
+}  // namespace leeway::sim

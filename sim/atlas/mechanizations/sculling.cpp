@@ -1,0 +1,50 @@
+#include <numbers>
+
+#include "leeway/earth/rotation.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
+#include "sim/atlas/mechanization_scenes.hpp"
+#include "sim/atlas/vibration.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kScullingRad = 0.2 * kRadPerDeg;
+constexpr double kScullingMps2 = 20.0;
+
+/// Rolls and swings sideways in phase: the force has a mean upwards in the body's axes, none in
+/// level ones.
+Trajectory sculling_motion(double frequency_hz) {
+  Trajectory trajectory;
+  trajectory.name = "sculling";
+  trajectory.plane = TangentPlane(kDefaultOrigin);
+  trajectory.motion = [frequency_hz](double t_s) {
+    const double omega_radps = 2.0 * std::numbers::pi * frequency_hz;
+    const Jet swing = sin(omega_radps * time_jet(t_s));
+    LocalMotion m;
+    m.roll_rad = kScullingRad * swing;
+    m.east_m = -kScullingMps2 / (omega_radps * omega_radps) * swing;
+    return m;
+  };
+  return trajectory;
+}
+
+double force_error_mg(const NavState& truth, const NavState& nav, double t_s) {
+  return (truth.v_e_mps - nav.v_e_mps).norm() / t_s / kStandardGravityMps2 * 1e3;
+}
+
+}  // namespace
+
+AtlasScene sculling() {
+  return {"sculling",
+          "Sculling vibration",
+          "error of the mean acceleration",
+          "mg",
+          {0.1, 1.0,
+           "0.1 mg is the bias of an accelerometer between tactical and aviation grade, 1 mg that "
+           "of a tactical one"},
+          [](const AtlasOptions& options) {
+            return vibration_cells(sculling_motion, force_error_mg, options);
+          }};
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,108 @@
+#include <cmath>
+
+#include "sim/atlas/mechanization_scenes.hpp"
+#include "sim/atlas/town_drive.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kUnderDriveS = 400.0;
+constexpr double kSettledAfterS = 100.0;
+constexpr std::chrono::seconds kFixEvery{10};  // from then on; each second before
+constexpr Time kVibratesFrom{std::chrono::seconds{150}};
+
+/// RMS horizontal error before fixes, over what the filter claims for it.
+double horizontal_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
+  double squares = 0.0;
+  double epochs = 0.0;
+  replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
+    if (to_seconds(truth.nav.time) <= kSettledAfterS || !now.has_estimate()) return;
+    const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
+    const Eigen::Matrix3d P_n_m2 =
+        C_ne * now.covariance()->block<3, 3>(kDr, kDr) * C_ne.transpose();
+    const Eigen::Vector3d error_n_m = position_error_n_m(truth, now.estimate());
+    squares += error_n_m.head<2>().squaredNorm() / P_n_m2.topLeftCorner<2, 2>().trace();
+    epochs += 1.0;
+  });
+  return std::sqrt(squares / epochs);
+}
+
+/// Between fixes that are far apart the sensors' errors show.
+void thin_out_fixes(RecordedTrial& trial) {
+  std::erase_if(trial.fixes, [](const RecordedTrial::Fix& fix) {
+    return to_seconds(fix.fix.time) > kSettledAfterS &&
+           fix.fix.time.time_since_epoch() % kFixEvery != Duration{};
+  });
+}
+
+struct SensorFault {
+  const char* condition;
+  void (*spoil)(ImuIncrement&);
+};
+
+/// Rectification: what shakes a MEMS sensor shifts its mean, from the moment it shakes.
+void rectify(ImuIncrement& inc) {
+  if (inc.time <= kVibratesFrom) return;
+  inc.dv_b_mps += 0.03 * kStandardGravityMps2 * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
+  inc.dtheta_b_rad += 0.3 * kRadPerDeg * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
+}
+
+constexpr SensorFault kSensorFaults[] = {
+    {"as modelled", [](ImuIncrement&) {}},
+    {"gyro scale 3 %", [](ImuIncrement& inc) { inc.dtheta_b_rad *= 1.03; }},
+    {"accelerometer scale 3 %", [](ImuIncrement& inc) { inc.dv_b_mps *= 1.03; }},
+    {"g-sensitivity 0.1 deg/s/g",
+     [](ImuIncrement& inc) {
+       inc.dtheta_b_rad += 0.1 * kRadPerDeg / kStandardGravityMps2 * inc.dv_b_mps;
+     }},
+    {"vibration shifts biases by 30 mg and 0.3 deg/s", rectify}};
+
+std::vector<AtlasColumn> claiming_columns() {
+  std::vector<AtlasColumn> columns;
+  for (const AtlasColumn& column : few_atlas_columns()) {
+    if (column.group != AtlasGroup::kReset) columns.push_back(column);
+  }
+  return columns;
+}
+
+/// What a filter without such states can be told: more noise.
+EkfConfig told_as_noise(EkfConfig config) {
+  config.imu.gyro.noise_density *= 30.0;
+  config.imu.accelerometer.noise_density *= 30.0;
+  return config;
+}
+
+std::vector<AtlasCell> run_under_modelled(const AtlasOptions& options) {
+  Scene scene = town_drive(kUnderDriveS);
+  scene.imu_rate_hz = 50.0;
+  const auto trials = spoiled(recorded_trials(scene, options.brief ? 1 : 4), thin_out_fixes);
+  std::vector<AtlasCell> cells;
+  const auto add = [&](const SensorFault& fault, const EkfConfig& believed,
+                       const std::string& condition) {
+    const auto faulty = spoiled(trials, [&fault](RecordedTrial& trial) {
+      for (ImuIncrement& inc : trial.imu) fault.spoil(inc);
+    });
+    for (const AtlasCell& cell :
+         scored(claiming_columns(), believed, faulty, condition, horizontal_over_claim)) {
+      cells.push_back(cell);
+    }
+  };
+  for (const SensorFault& fault : kSensorFaults) {
+    add(fault, scene.filter, fault.condition);
+    add(fault, told_as_noise(scene.filter), std::string(fault.condition) + "; told as noise");
+  }
+  return cells;
+}
+
+}  // namespace
+
+AtlasScene under_modelled() {
+  return {"under-modelled",
+          "Sensors that err otherwise than the filter believes",
+          "RMS horizontal error before a fix, over the claimed sigma",
+          "",
+          {1.5, 3.0, "an honest filter has 1; at 3 what it calls one in twenty is the rule"},
+          run_under_modelled};
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,220 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "leeway/sim/sensors/imu_simulator.hpp"
+#include "leeway/sim/trials/campaign.hpp"
+#include "leeway/sim/trials/trial_journal.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/output.hpp"
+#include "sim/cli/pages/campaign_fan.hpp"
+#include "sim/cli/pages/report.hpp"
+#include "sim/cli/scene_options.hpp"
+
+namespace leeway::cli {
+namespace {
+
+struct CommandOptions {
+  SceneChoice scene{};
+  std::optional<int> trials{};
+  std::optional<std::uint64_t> first_seed{};
+  sim::CampaignOptions campaign{};
+  std::filesystem::path report{};
+  bool json{false};
+};
+
+sim::Scene chosen_scene(const CommandOptions& options) {
+  sim::Scene scene = scene_of(options.scene);
+  if (options.trials) scene.trials = *options.trials;
+  if (options.first_seed) scene.first_seed = *options.first_seed;
+  return scene;
+}
+
+Json results_json(const sim::CampaignResult& r) {
+  return {{"trials", r.trials},
+          {"epochs", r.epochs},
+          {"rms_horizontal_m", r.rms_horizontal_m},
+          {"sigma_horizontal_m", r.sigma_horizontal_m},
+          {"rms_over_sigma", r.rms_over_sigma},
+          {"rms_ned_m", {r.rms_n_m[0], r.rms_n_m[1], r.rms_n_m[2]}},
+          {"sigma_ned_m", {r.sigma_n_m[0], r.sigma_n_m[1], r.sigma_n_m[2]}},
+          {"nees", r.mean_nees},
+          {"nees_band", {r.nees_low, r.nees_high}},
+          {"nis_over_dof", r.nis_over_dof},
+          {"beyond_r95", r.beyond_r95},
+          {"fixes_fused", r.fused},
+          {"fixes_gated", r.gated},
+          {"trials_diverged", r.diverged},
+          {"trials_not_finite", r.not_finite},
+          {"worst_horizontal_m", r.worst_horizontal_m},
+          {"worst_seed", r.worst_seed}};
+}
+
+void print_errors(const sim::CampaignResult& r) {
+  Table table({"<error before a fix", "RMS, m", "claimed sigma, m", "RMS / sigma"});
+  const auto add = [&table](const char* axis, double rms_m, double sigma_m) {
+    table.add({axis, number(rms_m, 3), number(sigma_m, 3), number(rms_m / sigma_m, 3)});
+  };
+  add("horizontal", r.rms_horizontal_m, r.sigma_horizontal_m);
+  add("north", r.rms_n_m[0], r.sigma_n_m[0]);
+  add("east", r.rms_n_m[1], r.sigma_n_m[1]);
+  add("down", r.rms_n_m[2], r.sigma_n_m[2]);
+  table.print();
+}
+
+/// Scale factors, misalignments, g-sensitivity: what no filter here has states for.
+bool errs_beyond_biases(const ImuErrorModel& imu) {
+  const auto has_own = [](const TriadErrorModel& triad) {
+    return triad.scale_sigma > 0.0 || triad.misalignment_sigma_rad > 0.0 ||
+           !triad.M.isIdentity(0.0);
+  };
+  return has_own(imu.accelerometer) || has_own(imu.gyro) || imu.G_g_sigma_radps_per_mps2 > 0.0 ||
+         !imu.G_g_radps_per_mps2.isZero(0.0);
+}
+
+void print_consistency(const sim::Scene& scene, const sim::CampaignResult& r) {
+  Table table({"<consistency", "found", "<of an honest filter"});
+  table.add({"NEES of 15 states", number(r.mean_nees, 2),
+             fmt::format("{:.2f} to {:.2f} (95 %)", r.nees_low, r.nees_high)},
+            r.mean_nees >= r.nees_low && r.mean_nees <= r.nees_high ? Tone::kGood : Tone::kBad);
+  table.add({"NIS of fused fixes / degrees of freedom", number(r.nis_over_dof, 3), "1"});
+  table.add({"errors beyond the claimed R95 radius, %", number(100.0 * r.beyond_r95, 2), "5"});
+  table.print();
+  if (!errs_beyond_biases(scene.imu)) return;
+  fmt::print(
+      "\nThe IMU has scale factors, misalignments or g-sensitivity. As far as they act like a\n"
+      "bias the filter takes them for one; the NEES compares that with the bias alone, and is\n"
+      "the larger for it.\n");
+}
+
+void print_report(const sim::Scene& scene, const sim::CampaignResult& r) {
+  fmt::print("Scene '{}': {} s, IMU {} at {} Hz, fixes every {} s\n", scene.name, scene.duration_s,
+             scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s);
+  fmt::print("{} trials, seeds {} to {}, {} scored epochs\n\n", r.trials, scene.first_seed,
+             scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1, r.epochs);
+  print_errors(r);
+  fmt::print("\n");
+  print_consistency(scene, r);
+  fmt::print("\nFixes: {} fused, {} refused by the gate\n", r.fused, r.gated);
+  fmt::print("Largest error: {} m, of seed {}\n", number(r.worst_horizontal_m, 2), r.worst_seed);
+  fmt::print("Diverged: {} trials, of which {} not finite and left out of the figures\n",
+             r.diverged, r.not_finite);
+}
+
+/// What was computed now, and how fast.
+void print_speed(const sim::Scene& scene, const sim::CampaignResult& r, int cores,
+                 double elapsed_s) {
+  const std::int64_t run = r.trials - r.resumed;
+  const auto steps = static_cast<double>(
+      sim::increment_count(scene.trajectory, scene.imu_rate_hz, scene.duration_s));
+  fmt::print(
+      "Computed: {} trials in {:.1f} s, {} from the journal; {:.2f} million filter steps "
+      "per second on each of {} cores\n",
+      run, elapsed_s, r.resumed, 1e-6 * static_cast<double>(run) * steps / elapsed_s / cores,
+      cores);
+}
+
+int cores_of(const CommandOptions& options, const sim::Ranks& ranks) {
+  if (options.campaign.threads > 0) return ranks.count() * options.campaign.threads;
+  if (ranks.count() > 1) return ranks.count();
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+int run_on(const CommandOptions& options, const sim::Ranks& ranks) {
+  using Clock = std::chrono::steady_clock;
+  const sim::Scene scene = chosen_scene(options);
+  const auto start = Clock::now();
+  const sim::CampaignResult result = [&] {
+    sim::CampaignOptions shown = options.campaign;
+    if (!ranks.is_first()) return sim::campaign(scene, shown, ranks);
+    Progress progress("campaign");
+    shown.progress = [&progress](const sim::CampaignProgress& p) {
+      progress.show(p.fraction, p.remaining_s);
+    };
+    return sim::campaign(scene, shown, ranks);
+  }();
+  if (!ranks.is_first()) return kSuccess;
+  Json input = scene_json(scene);
+  if (options.campaign.score_last_s) input["score_last_s"] = *options.campaign.score_last_s;
+  const Json answer = answer_json("campaign", std::move(input), results_json(result));
+  if (options.json) {
+    print_json(answer);
+  } else {
+    print_report(scene, result);
+    print_speed(scene, result, cores_of(options, ranks),
+                std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  if (!options.report.empty()) {
+    write_report(options.report, answer, campaign_fan(scene, options.campaign.threads));
+  }
+  return result.epochs > 0 ? kSuccess : kNoAnswer;
+}
+
+/// Ends all ranks; the first is the one to say why.
+[[noreturn]] void stop(const sim::Ranks& ranks, const std::string& message, int exit_code) {
+  if (ranks.is_first()) {
+    std::fflush(stdout);
+    fmt::print(stderr, "leeway: {}\n", message);
+  }
+  ranks.stop(message, exit_code);
+}
+
+int run(const CommandOptions& options) {
+  const sim::Ranks ranks;
+  const auto give_up = [&ranks](const std::exception& error, int exit_code) {
+    if (ranks.count() > 1) stop(ranks, error.what(), exit_code);
+  };
+  try {
+    return run_on(options, ranks);
+  } catch (const sim::JournalFailure& error) {
+    give_up(error, kFailure);
+    throw WriteFailure(error.what());
+  } catch (const sim::RankFailure& error) {
+    give_up(error, error.exit_code);
+    throw;
+  } catch (const Error& error) {
+    give_up(error, kUnusable);
+    throw;
+  } catch (const std::exception& error) {
+    give_up(error, kFailure);
+    throw;
+  }
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App& program, int& exit_code) {
+  CLI::App* app = program.add_subcommand(
+      "campaign", "Whether the filter errs as much as it claims: Monte Carlo trials of a scene");
+  const auto options = std::make_shared<CommandOptions>();
+  sim::CampaignOptions& c = options->campaign;
+  add_scene_options(*app, options->scene);
+  app->add_option("--trials", options->trials, "in place of the scene's")
+      ->check(CLI::Range(1, 10'000'000));
+  app->add_option("--first-seed", options->first_seed,
+                  "trial k has this seed + k; in place of the scene's");
+  app->add_option("--threads", c.threads,
+                  "0: all processors, or one for each rank under mpirun or srun")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_option("--journal", c.journal,
+                  "keep finished trials here, and do not run again those that are")
+      ->type_name("FILE");
+  app->add_option("--score-last-s", c.score_last_s,
+                  "score fixes this close to the scene's end, s (default: as the scene's budget)")
+      ->check(CLI::PositiveNumber);
+  add_report_option(*app, options->report);
+  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
+  app->footer(
+      "Results are the same to the bit on any number of threads and ranks.\n"
+      "Examples:\n"
+      "  leeway campaign --scene car.toml --trials 1000 --journal car.journal\n"
+      "  mpirun -n 4 leeway campaign --scene car.toml --trials 1000 --journal car.journal");
+  app->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "leeway/logs/csv_writer.hpp"
+#include "leeway/logs/gnss_log.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/commands/fuse_jobs.hpp"
+#include "sim/cli/pages/fuse_report.hpp"
+#include "sim/cli/pages/fuse_series.hpp"
+#include "sim/cli/pages/report.hpp"
+
+namespace leeway::cli {
+namespace {
+
+/// How far a replay has come, told by the span of its fixes.
+class ReplayProgress {
+ public:
+  explicit ReplayProgress(const sim::ReplayInput& input)
+      : bar_(input.imu.parent_path().filename().string()) {
+    if (!bar_.visible() || !std::filesystem::is_regular_file(input.gnss)) return;
+    GnssLogReader gnss(input.gnss);
+    while (const auto fix = gnss.next()) {
+      if (!first_) first_ = fix->time;
+      last_ = fix->time;
+    }
+  }
+
+  void operator()(Time t) {
+    if (!first_ || last_ <= *first_) return;
+    bar_.show(to_seconds(t - *first_) / to_seconds(last_ - *first_));
+  }
+
+ private:
+  Progress bar_;
+  std::optional<Time> first_{};
+  Time last_{};
+};
+
+/// Whether all that was asked for has an answer.
+bool is_answered(const FuseJob& job) {
+  const sim::ReplayResult& r = job.result;
+  if (!r.has_solution) return false;
+  if (!job.input.truth.empty() && r.rms.epochs == 0) return false;
+  return r.outages.empty() || std::any_of(r.outages.begin(), r.outages.end(), [](const auto& o) {
+           return o.against != sim::Against::kNothing;
+         });
+}
+
+/// @pre fuse_jobs() has opened the input: what fails from here on is the output.
+/// @param series  collects what a report shows of the run; null: there is none
+void replay(FuseJob& job, NavigatorConfig config, FuseSeries* series) {
+  if (job.estimates_mount) config.C_bs.reset();
+  writing([&] {
+    // Unclosed, it leaves nothing: this only tells early whether the file can be created.
+    if (!job.input.solution.empty()) CsvWriter(job.input.solution, {"t_s"});
+    ReplayProgress progress(job.input);
+    sim::ReplayObserver observer = series ? series->observer() : sim::ReplayObserver{};
+    observer.progress = [&progress](Time t) { progress(t); };
+    job.result = sim::replay(job.input, config, observer);
+  });
+}
+
+int run(const FuseOptions& options) {
+  const NamedImu imu = imu_of(options.imu);
+  const NavigatorConfig config = navigator_config(options, imu.model);
+  std::vector<FuseJob> jobs = fuse_jobs(options);
+  const std::filesystem::path& report = options.output.report;
+  Json all_series = Json::object();
+  for (FuseJob& job : jobs) {
+    FuseSeries series;
+    replay(job, config, report.empty() ? nullptr : &series);
+    if (!report.empty()) series.add_to(all_series, job.drive);
+    warn(job);
+  }
+  const Json answer = fuse_json(options, imu.name, jobs);
+  if (options.output.json) {
+    print_json(answer);
+  } else {
+    print_tables(options, imu.name, jobs);
+  }
+  write_report(report, answer, std::move(all_series));
+  return std::all_of(jobs.begin(), jobs.end(), is_answered) ? kSuccess : kNoAnswer;
+}
+
+void add_log_options(CLI::App& app, FuseLogs& logs) {
+  const auto file = [&app](const char* name, std::filesystem::path& path, const char* description) {
+    return app.add_option(name, path, description)->type_name("FILE");
+  };
+  CLI::Option* drive =
+      app.add_option("--drive", logs.drives,
+                     "a folder with imu.csv.gz, gnss.csv.gz, reference_position.csv.gz, meta.json "
+                     "(mount_rpy_deg, reference_window_s) and outages.json; may be repeated")
+          ->type_name("DIR");
+  for (CLI::Option* option :
+       {file("--imu", logs.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip"),
+        file("--gnss", logs.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip"),
+        file("--odometer", logs.odometer, "speed log, CSV: t_s, speed_mps and maybe sigma_mps"),
+        file("--barometer", logs.barometer, "height log, CSV: t_s, height_m and maybe sigma_m"),
+        file("--truth", logs.truth,
+             "truth or reference log to measure errors against; without it the errors of outages "
+             "are measured against the withheld fixes"),
+        file("--outages", logs.outages,
+             "JSON [{\"start_s\": .., \"duration_s\": ..}, ..]: each is withheld alone"),
+        add_numbers<2>(app, "--truth-window", "FROM,TO", logs.truth_window_s,
+                       "use the truth between these times only, s"),
+        add_numbers<3>(app, "--mount", "ROLL,PITCH,YAW", logs.mount_rpy_deg,
+                       "sensor axes to vehicle axes Rz(Y) Ry(P) Rx(R), deg; without it the sensor "
+                       "axes are forward, right, down")}) {
+    option->excludes(drive);
+  }
+  app.add_option("--mount-axes", logs.mount_axes,
+                 "the vehicle axes of --mount: forward-left-up or forward-right-down")
+      ->check(CLI::IsMember({"flu", "frd"}))
+      ->capture_default_str();
+  app.add_option("--rate-meaning", logs.rate_meaning,
+                 "what a rate in the IMU log is: the value at its time, the mean since the one "
+                 "before, or a value held until the next")
+      ->check(CLI::IsMember(rate_meaning_names()))
+      ->capture_default_str();
+  add_numbers<2>(app, "--gnss-sigma-scale", "POS,VEL", logs.gnss_sigma_scale,
+                 "multiply the standard deviations of the GNSS log (default: 1,1)");
+}
+
+void add_filter_options(CLI::App& app, FuseOptions& options) {
+  add_imu_options(app, options.imu);
+  add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
+                 "IMU to antenna, forward, right, down, m (default: 0,0,0)");
+  EkfConfig& filter = options.filter;
+  app.add_option("--gnss-correlation-s", filter.gnss_correlation_s,
+                 "correlation time of the GNSS position error, s; 0: white")
+      ->capture_default_str();
+  app.add_option("--gate", filter.gate_probability,
+                 "refuse a fix that is this improbable; probability")
+      ->capture_default_str();
+  app.add_option("--covariance-interval-s", filter.covariance_interval_s,
+                 "time between covariance propagations, s; 0: at every IMU sample")
+      ->capture_default_str();
+  app.add_option(
+         "--align-speed-mps", options.alignment.min_speed_mps,
+         "the GNSS course is taken as the heading from this speed on, m/s; 1 suits a walker")
+      ->capture_default_str();
+  app.add_option("--scheme", options.scheme, "integration scheme of the strapdown")
+      ->check(CLI::IsMember(scheme_names()))
+      ->capture_default_str();
+}
+
+void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
+  app.add_option("--vehicle", vehicle.name,
+                 "car: use that it stands still at times and never slides sideways; without "
+                 "--mount the mount is estimated")
+      ->check(CLI::IsMember({"none", "car"}))
+      ->capture_default_str();
+  app.add_option("--without", vehicle.without, "switch a part of --vehicle off; may be repeated")
+      ->check(CLI::IsMember(vehicle_part_names()));
+  app.add_flag("--estimate-mount", vehicle.estimate_mount,
+               "estimate the mount even if meta.json of a --drive gives one")
+      ->excludes(app.get_option("--mount"));
+}
+
+void add_timing_options(CLI::App& app, TimingConfig& timing) {
+  app.add_option("--position-lag-s", timing.position_lag_s,
+                 "GNSS positions are those of this long before their time, s")
+      ->capture_default_str();
+  app.add_option("--velocity-lag-s", timing.velocity_lag_s,
+                 "the same for velocities: half an epoch where they are means over one, s")
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& app, FuseOutput& output) {
+  app.add_option("--out", output.solution, "write the solution as CSV; gzip when it ends in .gz")
+      ->type_name("FILE")
+      ->excludes(app.get_option("--drive"));
+  app.add_option("--out-rate-hz", output.rate_hz,
+                 "solution epochs per second, in the file and in the RMS errors")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->capture_default_str();
+  add_report_option(app, output.report);
+  app.add_flag("--verbose", output.verbose, "list every outage, also when they are more than 20");
+  app.add_flag("--json", output.json, "one JSON object on standard output instead of tables");
+}
+
+}  // namespace
+
+void add_fuse_command(CLI::App& program, int& exit_code) {
+  CLI::App* app = program.add_subcommand(
+      "fuse", "Fuse an IMU and a GNSS log, and tell how far the solution is off");
+  const auto options = std::make_shared<FuseOptions>();
+  add_log_options(*app, options->logs);
+  add_filter_options(*app, *options);
+  add_vehicle_options(*app, options->vehicle);
+  add_timing_options(*app, options->timing);
+  add_output_options(*app, options->output);
+  app->footer(
+      "Examples:\n"
+      "  leeway fuse --imu imu.csv --gnss gnss.csv --truth truth.csv --out solution.csv\n"
+      "  leeway fuse --imu imu.csv --gnss gnss.csv --vehicle car\n"
+      "  leeway fuse --drive drives/one --drive drives/two --json");
+  app->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace leeway::cli

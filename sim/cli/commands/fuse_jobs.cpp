@@ -1,0 +1,208 @@
+#include "sim/cli/commands/fuse_jobs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "leeway/earth/error.hpp"
+#include "leeway/earth/rotation.hpp"
+
+namespace leeway::cli {
+namespace {
+
+const char* format_name(ImuLogFormat format) {
+  switch (format) {
+    case ImuLogFormat::kCsvRates:
+      return "CSV, rates";
+    case ImuLogFormat::kCsvIncrements:
+      return "CSV, increments";
+    case ImuLogFormat::kKfGins:
+      break;
+  }
+  return "KF-GINS text";
+}
+
+const char* format_name(GnssLogFormat format) {
+  switch (format) {
+    case GnssLogFormat::kCsv:
+      return "CSV";
+    case GnssLogFormat::kKfGins:
+      return "KF-GINS text";
+    case GnssLogFormat::kRtklib:
+      break;
+  }
+  return "RTKLIB .pos";
+}
+
+std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// C_bs of a mount; without one the sensor axes are the body axes.
+Eigen::Matrix3d mount_rotation(const std::optional<Eigen::Vector3d>& rpy_deg,
+                               const std::string& axes) {
+  if (!rpy_deg) return Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d rpy = *rpy_deg * kRadPerDeg;
+  const Eigen::Matrix3d R = rotation_from_euler({rpy.x(), rpy.y(), rpy.z()});
+  if (axes == "frd") return R;
+  return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal() * R;
+}
+
+/// A pipe delivers its content once, so it is not looked into beforehand.
+bool can_be_read_twice(const std::filesystem::path& path) {
+  return !std::filesystem::exists(path) || std::filesystem::is_regular_file(path) ||
+         std::filesystem::is_directory(path);
+}
+
+/// Opens the logs and closes them again.
+void inspect(FuseJob& job) {
+  const sim::ReplayInput& in = job.input;
+  job.imu_format = job.gnss_format = "stream";
+  if (can_be_read_twice(in.imu)) {
+    job.imu_format = format_name(ImuLogReader(in.imu, in.imu_options).format());
+  }
+  if (can_be_read_twice(in.gnss)) {
+    job.gnss_format = format_name(GnssLogReader(in.gnss, in.gnss_options).format());
+  }
+  if (!in.odometer.empty() && can_be_read_twice(in.odometer)) {
+    ScalarLogReader{in.odometer, sim::odometer_columns()};
+  }
+  if (!in.barometer.empty() && can_be_read_twice(in.barometer)) {
+    ScalarLogReader{in.barometer, sim::barometer_columns()};
+  }
+  if (!in.truth.empty() && can_be_read_twice(in.truth)) TruthLogReader{in.truth};
+}
+
+FuseJob job_with_options(const FuseOptions& options) {
+  const FuseLogs& logs = options.logs;
+  FuseJob job;
+  job.input.imu_options.meaning =
+      static_cast<RateMeaning>(index_of(rate_meaning_names(), logs.rate_meaning));
+  if (logs.gnss_sigma_scale) {
+    job.input.gnss_options.position_sigma_scale = logs.gnss_sigma_scale->x();
+    job.input.gnss_options.velocity_sigma_scale = logs.gnss_sigma_scale->y();
+  }
+  job.input.solution_rate_hz = options.output.rate_hz;
+  return job;
+}
+
+void set_truth(sim::ReplayInput& input, const std::filesystem::path& truth,
+               const std::optional<Eigen::Vector2d>& window_s) {
+  input.truth = truth;
+  if (!window_s) return;
+  if (!(window_s->x() < window_s->y())) {
+    throw Error("the truth window is from " + std::to_string(window_s->x()) + " to " +
+                std::to_string(window_s->y()) + " s: its end must be later than its begin");
+  }
+  input.truth_from_s = window_s->x();
+  input.truth_to_s = window_s->y();
+}
+
+FuseJob job_of_logs(const FuseOptions& options) {
+  const FuseLogs& logs = options.logs;
+  FuseJob job = job_with_options(options);
+  job.mount_rpy_deg = logs.mount_rpy_deg;
+  job.input.imu = logs.imu;
+  job.input.gnss = logs.gnss;
+  job.input.odometer = logs.odometer;
+  job.input.barometer = logs.barometer;
+  job.input.solution = options.output.solution;
+  set_truth(job.input, logs.truth, logs.truth_window_s);
+  if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);
+  return job;
+}
+
+/// meta.json: {"mount_rpy_deg": [r, p, y], "reference_window_s": [from, to] or null}.
+FuseJob job_of_drive(const FuseOptions& options, const std::filesystem::path& folder) {
+  const std::filesystem::path meta_path = folder / "meta.json";
+  std::ifstream file(meta_path);
+  if (!file) throw Error(meta_path.string() + ": cannot be opened; a drive is a folder with one");
+  FuseJob job = job_with_options(options);
+  job.drive = (folder / "").parent_path().filename().string();
+  job.input.imu = folder / "imu.csv.gz";
+  job.input.gnss = folder / "gnss.csv.gz";
+  try {
+    const Json meta = Json::parse(file);
+    const auto mount = meta.at("mount_rpy_deg").get<std::array<double, 3>>();
+    job.mount_rpy_deg = Eigen::Vector3d(mount[0], mount[1], mount[2]);
+    const Json& window = meta.at("reference_window_s");
+    if (!window.is_null()) {
+      const auto from_to = window.get<std::array<double, 2>>();
+      set_truth(job.input, folder / "reference_position.csv.gz",
+                Eigen::Vector2d(from_to[0], from_to[1]));
+    }
+  } catch (const Json::exception& error) {
+    throw Error(meta_path.string() + ": " + error.what());
+  }
+  job.input.outages = sim::read_outages(folder / "outages.json");
+  return job;
+}
+
+}  // namespace
+
+const std::vector<std::string>& rate_meaning_names() {
+  static const std::vector<std::string> names{"mean", "point", "held"};
+  return names;
+}
+
+const std::vector<std::string>& scheme_names() {
+  static const std::vector<std::string> names{"explicit-euler", "semi-implicit-euler", "trapezoid",
+                                              "one-sample",     "two-sample",          "rk4"};
+  return names;
+}
+
+const std::vector<std::string>& vehicle_part_names() {
+  static const std::vector<std::string> names{"zero-velocity", "zero-angular-rate", "non-holonomic",
+                                              "odometer", "barometer"};
+  return names;
+}
+
+VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
+  if (vehicle.name == "none") return {};
+  VehicleConfig config = VehicleConfig::car();
+  bool* const parts[] = {&config.zero_velocity, &config.zero_angular_rate, &config.non_holonomic,
+                         &config.odometer, &config.barometer};
+  for (const std::string& part : vehicle.without) {
+    *parts[index_of(vehicle_part_names(), part)] = false;
+  }
+  return config;
+}
+
+NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu) {
+  NavigatorConfig config;
+  config.filter = options.filter;
+  config.alignment = options.alignment;
+  config.timing = options.timing;
+  config.vehicle = vehicle_config(options.vehicle);
+  config.filter.imu = imu;
+  config.filter.strapdown.scheme = static_cast<Scheme>(index_of(scheme_names(), options.scheme));
+  if (options.lever_arm_b_m) config.filter.lever_arm_b_m = *options.lever_arm_b_m;
+  static_cast<void>(Navigator(config));  // refuses what cannot be
+  return config;
+}
+
+std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
+  const FuseLogs& logs = options.logs;
+  const bool asks_for_a_vehicle =
+      !options.vehicle.without.empty() || !logs.odometer.empty() || !logs.barometer.empty();
+  if (options.vehicle.name == "none" && asks_for_a_vehicle) {
+    throw Error("--without, --odometer and --barometer are used with --vehicle car");
+  }
+  if (logs.drives.empty() && (logs.imu.empty() || logs.gnss.empty())) {
+    throw Error("fuse needs --imu and --gnss, or --drive");
+  }
+  std::vector<FuseJob> jobs;
+  if (logs.drives.empty()) jobs.push_back(job_of_logs(options));
+  for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(options, folder));
+  for (FuseJob& job : jobs) {
+    const FuseVehicle& vehicle = options.vehicle;
+    job.estimates_mount = vehicle.estimate_mount || (vehicle.name != "none" && !job.mount_rpy_deg);
+    if (!job.estimates_mount) {
+      job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
+    }
+    inspect(job);
+  }
+  return jobs;
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,85 @@
+/// @file
+/// What `leeway fuse` was asked for, and the runs it comes to.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/sim/replay/replay.hpp"
+#include "sim/cli/options.hpp"
+
+namespace leeway::cli {
+
+/// The logs of one run, or folders that each hold a run.
+struct FuseLogs {
+  std::vector<std::filesystem::path> drives{};
+  std::filesystem::path imu{};
+  std::filesystem::path gnss{};
+  std::filesystem::path odometer{};
+  std::filesystem::path barometer{};
+  std::filesystem::path truth{};
+  std::filesystem::path outages{};
+  std::optional<Eigen::Vector2d> truth_window_s{};
+  std::optional<Eigen::Vector3d> mount_rpy_deg{};
+  std::string mount_axes{"flu"};
+  std::string rate_meaning{"point"};
+  std::optional<Eigen::Vector2d> gnss_sigma_scale{};  ///< of position, of velocity
+};
+
+struct FuseOutput {
+  std::filesystem::path solution{};
+  std::filesystem::path report{};
+  double rate_hz{10.0};
+  bool verbose{false};
+  bool json{false};
+};
+
+/// Aiding by what is known of the vehicle.
+struct FuseVehicle {
+  std::string name{"none"};
+  std::vector<std::string> without{};
+  bool estimate_mount{false};
+};
+
+struct FuseOptions {
+  FuseLogs logs{};
+  FuseVehicle vehicle{};
+  FuseOutput output{};
+  ImuChoice imu{};
+  EkfConfig filter{};  ///< all but the IMU model, the scheme and the lever arm
+  AlignmentConfig alignment{};
+  TimingConfig timing{};
+  std::string scheme{"two-sample"};
+  std::optional<Eigen::Vector3d> lever_arm_b_m{};
+};
+
+/// One run through the navigator, and what came of it.
+struct FuseJob {
+  std::string drive{};  ///< name of its folder; empty when the logs were given one by one
+  std::optional<Eigen::Vector3d> mount_rpy_deg{};
+  bool estimates_mount{false};
+  std::string imu_format{};
+  std::string gnss_format{};
+  sim::ReplayInput input{};
+  sim::ReplayResult result{};
+};
+
+/// The names of RateMeaning and of Scheme, in their order.
+const std::vector<std::string>& rate_meaning_names();
+const std::vector<std::string>& scheme_names();
+
+/// The parts of the vehicle aiding that can be switched off.
+const std::vector<std::string>& vehicle_part_names();
+
+/// @throws Error when the IMU model cannot be read or a number is out of range.
+NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu);
+
+/// Reads what describes the runs and opens every log, so that unusable input shows before anything
+/// is computed. @throws Error naming the file and what is wrong with it.
+std::vector<FuseJob> fuse_jobs(const FuseOptions& options);
+
+}  // namespace leeway::cli

@@ -1,0 +1,197 @@
+#include <spdlog/fmt/fmt.h>
+
+#include "sim/cli/pages/fuse_report.hpp"
+
+namespace leeway::cli {
+namespace {
+
+Json path_json(const std::filesystem::path& path) {
+  return path.empty() ? Json() : Json(path.string());
+}
+
+Json report_json(const std::filesystem::path& path, const std::string& format,
+                 const LogSummary& report) {
+  Json damaged = Json::object();
+  for (std::size_t d = 0; d < kLineDamageCount; ++d) {
+    if (report.damaged[d] > 0) {
+      damaged[std::string(name(static_cast<LineDamage>(d)))] = report.damaged[d];
+    }
+  }
+  return {{"path", path.string()},
+          {"format", format},
+          {"lines", report.lines},
+          {"records", report.records},
+          {"damaged_lines", report.damaged_lines()},
+          {"damaged", damaged},
+          {"messages", report.messages},
+          {"incomplete", report.incomplete.empty() ? Json() : Json(report.incomplete)}};
+}
+
+Json logs_json(const FuseJob& job) {
+  Json logs{{"imu", report_json(job.input.imu, job.imu_format, job.result.imu_report)},
+            {"gnss", report_json(job.input.gnss, job.gnss_format, job.result.gnss_report)}};
+  if (!job.input.odometer.empty()) {
+    logs["odometer"] = report_json(job.input.odometer, "CSV", job.result.odometer_report);
+  }
+  if (!job.input.barometer.empty()) {
+    logs["barometer"] = report_json(job.input.barometer, "CSV", job.result.barometer_report);
+  }
+  if (!job.input.truth.empty()) {
+    logs["truth"] = report_json(job.input.truth, "CSV", job.result.truth_report);
+  }
+  return logs;
+}
+
+Json health_json(const sim::ReplayResult& r) {
+  const Health& h = r.health;
+  return {{"state", name(h.state)},
+          {"position_nis_ratio", h.position_nis_ratio},
+          {"velocity_nis_ratio", h.velocity_nis_ratio},
+          {"position_sigma_scale", h.position_sigma_scale},
+          {"velocity_sigma_scale", h.velocity_sigma_scale},
+          {"repairs", h.repairs},
+          {"resets", h.resets},
+          {"realignments", h.realignments},
+          {"mount_rpy_deg", r.mount_rpy_deg ? json_of(r.mount_rpy_deg) : Json()}};
+}
+
+Json solution_json(const FuseJob& job) {
+  const sim::ReplayResult& r = job.result;
+  if (!r.has_solution) return nullptr;
+  return {{"path", path_json(job.input.solution)},
+          {"first_s", r.first_solution_s},
+          {"last_s", r.last_solution_s},
+          {"final_roll_deg", r.final_roll_deg},
+          {"health", health_json(r)}};
+}
+
+Json verdicts_json(const std::array<std::uint64_t, kVerdicts>& counts) {
+  Json verdicts = Json::object();
+  for (std::size_t v = 0; v < kVerdicts; ++v) {
+    verdicts[std::string(name(static_cast<Verdict>(v)))] = counts[v];
+  }
+  return verdicts;
+}
+
+Json rms_json(const sim::RmsErrors& rms) {
+  return {{"epochs", rms.epochs},
+          {"horizontal_m", rms.horizontal_m},
+          {"vertical_m", rms.vertical_m},
+          {"velocity_mps", rms.velocity_mps},
+          {"attitude_deg", rms.attitude_deg}};
+}
+
+Json outage_json(const FuseJob& job, const sim::OutageResult& r) {
+  const auto scored = [&r](double value) {
+    return r.against == sim::Against::kNothing ? Json() : Json(value);
+  };
+  Json against;
+  if (r.against == sim::Against::kReference) against = "reference";
+  if (r.against == sim::Against::kGnss) against = "gnss";
+  Json outage{{"start_s", r.outage.start_s},
+              {"duration_s", r.outage.duration_s},
+              {"end_error_h_m", scored(r.end_error_h_m)},
+              {"end_error_v_m", scored(r.end_error_v_m)},
+              {"max_error_h_m", scored(r.max_error_h_m)},
+              {"end_sigma_h_m", scored(r.end_sigma_h_m)},
+              {"against", against}};
+  if (!job.drive.empty()) outage["drive"] = job.drive;
+  return outage;
+}
+
+Json outages_json(const std::vector<FuseJob>& jobs) {
+  Json outages = Json::array();
+  for (const FuseJob& job : jobs) {
+    for (const sim::OutageResult& r : job.result.outages) outages.push_back(outage_json(job, r));
+  }
+  return outages;
+}
+
+Json summary_json(const std::vector<sim::OutageResult>& outages) {
+  Json summary = Json::array();
+  for (const sim::OutageSummary& s : sim::summarize(outages)) {
+    const auto scored = [&s](double value) { return s.count > 0 ? Json(value) : Json(); };
+    summary.push_back({{"duration_s", s.duration_s},
+                       {"count", s.count},
+                       {"unscored", s.unscored},
+                       {"rms_end_h_m", scored(s.rms_end_h_m)},
+                       {"median_end_h_m", scored(s.median_end_h_m)},
+                       {"max_end_h_m", scored(s.max_end_h_m)},
+                       {"rms_end_v_m", scored(s.rms_end_v_m)},
+                       {"rms_over_sigma_h", scored(s.rms_over_sigma_h)}});
+  }
+  return summary;
+}
+
+Json drives_json(const std::vector<FuseJob>& jobs) {
+  Json drives = Json::array();
+  for (const FuseJob& job : jobs) {
+    const FuseTotals totals = totals_of({job});
+    Json drive{{"drive", job.drive},
+               {"mount_rpy_deg", json_of(job.mount_rpy_deg)},
+               {"solution", solution_json(job)},
+               {"verdicts", verdicts_json(job.result.verdicts)},
+               {"nis_mean", totals.nis_mean},
+               {"nis_dof_mean", totals.nis_dof_mean}};
+    if (!job.input.truth.empty()) drive["rms"] = rms_json(job.result.rms);
+    drive["logs"] = logs_json(job);
+    drives.push_back(std::move(drive));
+  }
+  return drives;
+}
+
+Json input_json(const FuseOptions& o, const std::string& imu_name) {
+  Json input;
+  if (o.logs.drives.empty()) {
+    input = {{"imu", path_json(o.logs.imu)},
+             {"gnss", path_json(o.logs.gnss)},
+             {"odometer", path_json(o.logs.odometer)},
+             {"barometer", path_json(o.logs.barometer)},
+             {"truth", path_json(o.logs.truth)},
+             {"outages", path_json(o.logs.outages)},
+             {"mount_rpy_deg", json_of(o.logs.mount_rpy_deg)}};
+  } else {
+    for (const auto& folder : o.logs.drives) input["drives"].push_back(folder.string());
+  }
+  const Eigen::Vector2d scale = o.logs.gnss_sigma_scale.value_or(Eigen::Vector2d::Ones());
+  input.update({{"vehicle", o.vehicle.name},
+                {"without", o.vehicle.without},
+                {"estimate_mount", o.vehicle.estimate_mount},
+                {"position_lag_s", o.timing.position_lag_s},
+                {"velocity_lag_s", o.timing.velocity_lag_s},
+                {"mount_axes", o.logs.mount_axes},
+                {"lever_arm_m", json_of(o.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))},
+                {"imu_model", imu_name},
+                {"rate_meaning", o.logs.rate_meaning},
+                {"scheme", o.scheme},
+                {"gnss_correlation_s", o.filter.gnss_correlation_s},
+                {"gnss_position_sigma_scale", scale.x()},
+                {"gnss_velocity_sigma_scale", scale.y()},
+                {"gate_probability", o.filter.gate_probability},
+                {"covariance_interval_s", o.filter.covariance_interval_s}});
+  return input;
+}
+
+}  // namespace
+
+Json fuse_json(const FuseOptions& options, const std::string& imu_name,
+               const std::vector<FuseJob>& jobs) {
+  const FuseTotals totals = totals_of(jobs);
+  Json results{{"outages", outages_json(jobs)},
+               {"outage_summary", summary_json(totals.outages)},
+               {"verdicts", verdicts_json(totals.verdicts)},
+               {"nis_mean", totals.nis_mean},
+               {"nis_dof_mean", totals.nis_dof_mean}};
+  bool has_truth = false;
+  for (const FuseJob& job : jobs) has_truth = has_truth || !job.input.truth.empty();
+  if (has_truth) results["rms"] = rms_json(totals.rms);
+  if (options.logs.drives.empty()) {
+    results["solution"] = solution_json(jobs.front());
+    results["logs"] = logs_json(jobs.front());
+  } else {
+    results["drives"] = drives_json(jobs);
+  }
+  return answer_json("fuse", input_json(options, imu_name), std::move(results));
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,214 @@
+#include "sim/cli/pages/atlas_report.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace leeway::cli {
+namespace {
+
+std::string with_unit(double figure, const std::string& unit) {
+  if (!std::isfinite(figure)) return "-";
+  return unit.empty() ? fmt::format("{:.3g}", figure) : fmt::format("{:.3g} {}", figure, unit);
+}
+
+/// "error, m", or what a ratio is called.
+std::string figure_heading(const sim::AtlasScene& scene) {
+  return scene.unit.empty() ? "figure" : "figure, " + scene.unit;
+}
+
+std::string limits_text(const sim::AtlasScene& scene) {
+  return fmt::format("survives up to {}, degrades up to {}: {}",
+                     with_unit(scene.limits.survives, scene.unit),
+                     with_unit(scene.limits.degrades, scene.unit), scene.limits.reason);
+}
+
+std::string verdict_text(const sim::AtlasScene& scene, const sim::AtlasCell& cell) {
+  return std::string(sim::name(sim::verdict_of(scene.limits, cell.figure)));
+}
+
+std::string reported_text(const sim::AtlasScene& scene, const sim::AtlasCell& cell) {
+  return sim::fails_silently(scene.limits, cell) ? "NOTHING" : cell.reported;
+}
+
+void print_scene(const sim::AtlasResult& result) {
+  const sim::AtlasScene& scene = result.scene;
+  fmt::print("\n{}: {}\n  {}; {}\n", scene.key, scene.title, scene.figure, limits_text(scene));
+  Table table({"<of", "<variant", "<condition", figure_heading(scene), "<verdict", "<reported"});
+  for (const sim::AtlasCell& cell : result.cells) {
+    table.add({std::string(sim::name(cell.group)), cell.variant, cell.condition,
+               with_unit(cell.figure, ""), verdict_text(scene, cell), reported_text(scene, cell)});
+  }
+  table.print();
+}
+
+/// Where verdict or figure is worst among the cells of a group; null without any.
+const sim::AtlasCell* worst_of(const sim::AtlasResult& result, sim::AtlasGroup group) {
+  const sim::AtlasCell* worst = nullptr;
+  for (const sim::AtlasCell& cell : result.cells) {
+    if (cell.group != group) continue;
+    // A figure that is none is the worst.
+    if (worst == nullptr || !(cell.figure <= worst->figure)) worst = &cell;
+  }
+  return worst;
+}
+
+std::string matrix_entry(const sim::AtlasResult& result, sim::AtlasGroup group) {
+  const sim::AtlasCell* worst = worst_of(result, group);
+  if (worst == nullptr) return "";
+  return fmt::format("{} {}", verdict_text(result.scene, *worst),
+                     with_unit(worst->figure, result.scene.unit));
+}
+
+std::string markdown_matrix(const std::vector<sim::AtlasResult>& results) {
+  std::string head = "| scene |";
+  std::string rule = "|---|";
+  for (std::size_t g = 0; g < sim::kAtlasGroups; ++g) {
+    head += fmt::format(" {} |", sim::name(static_cast<sim::AtlasGroup>(g)));
+    rule += "---|";
+  }
+  std::string text = head + "\n" + rule + "\n";
+  for (const sim::AtlasResult& result : results) {
+    text += fmt::format("| [{}](atlas/{}.md) |", result.scene.title, result.scene.key);
+    for (std::size_t g = 0; g < sim::kAtlasGroups; ++g) {
+      text += fmt::format(" {} |", matrix_entry(result, static_cast<sim::AtlasGroup>(g)));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// Each once, in the order of the cells.
+std::vector<std::string> each_once(const sim::AtlasResult& result,
+                                   std::string sim::AtlasCell::*member) {
+  std::vector<std::string> names;
+  for (const sim::AtlasCell& cell : result.cells) {
+    if (std::find(names.begin(), names.end(), cell.*member) == names.end()) {
+      names.push_back(cell.*member);
+    }
+  }
+  return names;
+}
+
+/// "fails 7.3 (NIS high)"; nothing where there is no such cell.
+std::string markdown_cell(const sim::AtlasResult& result, const std::string& variant,
+                          const std::string& condition) {
+  for (const sim::AtlasCell& cell : result.cells) {
+    if (cell.variant != variant || cell.condition != condition) continue;
+    const std::string reported = reported_text(result.scene, cell);
+    return fmt::format("{} {}{}", verdict_text(result.scene, cell), with_unit(cell.figure, ""),
+                       reported.empty() ? "" : " (" + reported + ")");
+  }
+  return "";
+}
+
+/// Variants by conditions.
+std::string markdown_scene(const sim::AtlasResult& result) {
+  const sim::AtlasScene& scene = result.scene;
+  const auto conditions = each_once(result, &sim::AtlasCell::condition);
+  std::string text = fmt::format("\n## {}\n\n`{}`, [{}.md](atlas/{}.md). Figure: {}{}; {}.\n\n",
+                                 scene.title, scene.key, scene.key, scene.key, scene.figure,
+                                 scene.unit.empty() ? "" : ", " + scene.unit, limits_text(scene));
+  std::string rule = "|---|";
+  text += "| variant |";
+  for (const std::string& condition : conditions) {
+    text += fmt::format(" {} |", condition);
+    rule += "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const std::string& variant : each_once(result, &sim::AtlasCell::variant)) {
+    text += fmt::format("| {} |", variant);
+    for (const std::string& condition : conditions) {
+      text += fmt::format(" {} |", markdown_cell(result, variant, condition));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+void print_atlas_list() {
+  Table table({"<scene", "<title", "<figure"});
+  for (const sim::AtlasScene& scene : sim::atlas_scenes()) {
+    table.add({scene.key, scene.title,
+               scene.unit.empty() ? scene.figure : scene.figure + ", " + scene.unit});
+  }
+  table.print();
+}
+
+void print_atlas(const std::vector<sim::AtlasResult>& results) {
+  for (const sim::AtlasResult& result : results) print_scene(result);
+}
+
+bool any_silent(const std::vector<sim::AtlasResult>& results) {
+  return std::any_of(results.begin(), results.end(), [](const sim::AtlasResult& result) {
+    return std::any_of(result.cells.begin(), result.cells.end(), [&result](const auto& cell) {
+      return sim::fails_silently(result.scene.limits, cell);
+    });
+  });
+}
+
+void print_atlas_findings(const std::vector<sim::AtlasResult>& results,
+                          const std::vector<sim::AtlasSurprise>& surprises) {
+  if (any_silent(results)) {
+    fmt::print("\nVariants of the library that fail, and no detector says so: see NOTHING above\n");
+  }
+  if (surprises.empty()) {
+    fmt::print("\nAll cells are as expected, figures within a factor of {:g}\n",
+               sim::kAtlasFigureFactor);
+    return;
+  }
+  fmt::print("\n{} cells are not as expected\n", surprises.size());
+  Table table({"<scene", "<variant", "<condition", "<expected", "<found"});
+  for (const sim::AtlasSurprise& s : surprises) {
+    table.add({s.scene, s.variant, s.condition, s.expected, s.found});
+  }
+  table.print();
+}
+
+Json atlas_json(const std::vector<sim::AtlasResult>& results,
+                const std::vector<sim::AtlasSurprise>& surprises) {
+  Json cells = Json::array();
+  for (const sim::AtlasResult& result : results) {
+    const sim::AtlasScene& scene = result.scene;
+    for (const sim::AtlasCell& cell : result.cells) {
+      cells.push_back({{"scene", scene.key},
+                       {"title", scene.title},
+                       {"group", sim::name(cell.group)},
+                       {"variant", cell.variant},
+                       {"condition", cell.condition},
+                       {"figure", cell.figure},
+                       {"figure_unit", scene.unit},
+                       {"verdict", verdict_text(scene, cell)},
+                       {"reported", cell.reported},
+                       {"silent", sim::fails_silently(scene.limits, cell)}});
+    }
+  }
+  Json unexpected = Json::array();
+  for (const sim::AtlasSurprise& s : surprises) {
+    unexpected.push_back({{"scene", s.scene},
+                          {"variant", s.variant},
+                          {"condition", s.condition},
+                          {"expected", s.expected},
+                          {"found", s.found}});
+  }
+  return {{"cells", std::move(cells)}, {"unexpected", std::move(unexpected)}};
+}
+
+std::string atlas_markdown(const std::vector<sim::AtlasResult>& results) {
+  std::string text =
+      "# The failure atlas\n\n"
+      "Scenes that are each built to break a method, run against every way of running the filter. "
+      "Written by `leeway atlas --markdown docs/atlas.md`;\nthe verdicts are checked by the tests. "
+      "A figure is the larger the worse. In the matrix: the worst of each group of variants. "
+      "*Not offered* are\nmethods that the library does not have: they are what a scene shows "
+      "failing. Every variant that the library offers and that fails is reported by\none of its "
+      "detectors, in brackets.\n\n";
+  text += markdown_matrix(results);
+  for (const sim::AtlasResult& result : results) text += markdown_scene(result);
+  return text;
+}
+
+}  // namespace leeway::cli

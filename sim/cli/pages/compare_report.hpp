@@ -1,0 +1,20 @@
+/// @file
+/// What `leeway compare` prints and writes.
+#pragma once
+
+#include <string>
+
+#include "leeway/sim/compare/compare.hpp"
+#include "sim/cli/output.hpp"
+
+namespace leeway::cli {
+
+/// The front, then every variant with what dominates it.
+void print_comparison(const sim::Comparison& comparison, int repeat);
+
+Json comparison_json(const sim::Comparison& comparison);
+
+/// A row for each variant, from the cheapest on.
+std::string comparison_csv(const sim::Comparison& comparison);
+
+}  // namespace leeway::cli

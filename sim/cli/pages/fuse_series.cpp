@@ -1,0 +1,109 @@
+#include "sim/cli/pages/fuse_series.hpp"
+
+#include <limits>
+
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/chi_square.hpp"
+
+namespace leeway::cli {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<std::string>& solution_columns() {
+  static const std::vector<std::string> names{"t_s",
+                                              "error_n_m",
+                                              "error_e_m",
+                                              "error_d_m",
+                                              "sigma_n_m",
+                                              "sigma_e_m",
+                                              "sigma_d_m",
+                                              "b_a_mps2_forward",
+                                              "b_a_mps2_right",
+                                              "b_a_mps2_down",
+                                              "sigma_b_a_mps2_forward",
+                                              "sigma_b_a_mps2_right",
+                                              "sigma_b_a_mps2_down",
+                                              "b_g_radps_forward",
+                                              "b_g_radps_right",
+                                              "b_g_radps_down",
+                                              "sigma_b_g_radps_forward",
+                                              "sigma_b_g_radps_right",
+                                              "sigma_b_g_radps_down"};
+  return names;
+}
+
+/// The bounds that 95 % of an honest filter's NIS are within.
+std::array<double, 2> nis_band(int dof) {
+  return {chi_square_threshold(0.975, dof), chi_square_threshold(0.025, dof)};
+}
+
+}  // namespace
+
+FuseSeries::FuseSeries()
+    : solution_(solution_columns()),
+      track_({"t_s", "east_m", "north_m", "true_east_m", "true_north_m"},
+             ReportTable::Keep::kFirst),
+      fixes_({"t_s", "nis", "nis_low", "nis_high"}),
+      outages_({"since_s", "outage", "error_h_m", "sigma_h_m"}, ReportTable::Keep::kFirst),
+      verdicts_(kVerdicts, ReportTable({"t_s"}, ReportTable::Keep::kFirst)) {}
+
+sim::ReplayObserver FuseSeries::observer() {
+  sim::ReplayObserver observer;
+  observer.epoch = [this](const Solution& s, const std::optional<TruthRecord>& truth) {
+    add(s, truth);
+  };
+  observer.fix = [this](const UpdateOutcome& update) { add(update); };
+  observer.verdict = [this](Time t, Verdict verdict) {
+    verdicts_[static_cast<std::size_t>(verdict)].add({to_seconds(t)});
+  };
+  observer.outage = [this](const sim::OutageEpoch& e) {
+    outages_.add({e.since_s, static_cast<double>(e.outage), e.error_h_m, e.sigma_h_m});
+  };
+  return observer;
+}
+
+void FuseSeries::add(const Solution& s, const std::optional<TruthRecord>& truth) {
+  std::optional<Eigen::Vector3d> true_r_e_m;
+  Eigen::Vector3d error_n_m = Eigen::Vector3d::Constant(kNone);
+  if (truth) {
+    true_r_e_m = ecef_from_geodetic(truth->nav.position);
+    error_n_m = ned_to_ecef(truth->nav.position).transpose() * (s.nav.r_e_m - *true_r_e_m);
+  }
+  Eigen::Matrix<double, 19, 1> row;
+  row << to_seconds(s.nav.time), error_n_m, s.sigma_position_n_m, s.b_a_mps2, s.sigma_b_a_mps2,
+      s.b_g_radps, s.sigma_b_g_radps;
+  solution_.add({row.data(), static_cast<std::size_t>(row.size())});
+  add_to_track(s, true_r_e_m);
+}
+
+void FuseSeries::add_to_track(const Solution& s, const std::optional<Eigen::Vector3d>& true_r_e_m) {
+  if (!origin_) origin_ = geodetic_from_ecef(s.nav.r_e_m);
+  const auto local = [this](const Eigen::Vector3d& r_e_m) -> Eigen::Vector3d {
+    return ned_to_ecef(*origin_).transpose() * (r_e_m - ecef_from_geodetic(*origin_));
+  };
+  const Eigen::Vector3d here_n_m = local(s.nav.r_e_m);
+  const Eigen::Vector3d there_n_m =
+      true_r_e_m ? local(*true_r_e_m) : Eigen::Vector3d::Constant(kNone).eval();
+  track_.add({to_seconds(s.nav.time), here_n_m.y(), here_n_m.x(), there_n_m.y(), there_n_m.x()});
+}
+
+void FuseSeries::add(const UpdateOutcome& update) {
+  const auto [low, high] = nis_band(update.dof);
+  fixes_.add({to_seconds(update.time), update.nis, low, high});
+}
+
+void FuseSeries::add_to(Json& series, const std::string& run) const {
+  const auto put = [&](const std::string& name, const ReportTable& table) {
+    if (!table.empty()) series[name] = table.json();
+  };
+  put("solution/" + run, solution_);
+  put("track/" + run, track_);
+  put("fixes/" + run, fixes_);
+  put("outages/" + run, outages_);
+  for (std::size_t v = 0; v < kVerdicts; ++v) {
+    put("verdict/" + run + "/" + std::string(name(static_cast<Verdict>(v))), verdicts_[v]);
+  }
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,74 @@
+#include "sim/cli/pages/report.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "report_template.hpp"
+
+namespace leeway::cli {
+namespace {
+
+constexpr std::string_view kDataMark = "/* report */";
+
+std::string& command_line() {
+  static std::string line;
+  return line;
+}
+
+/// As a shell reads it as one word.
+std::string as_word(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("-_./,:=+@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// JSON that cannot end the element it stands in.
+std::string as_element_text(const Json& json) {
+  std::string safe;
+  for (const char c : text_of(json)) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return safe;
+}
+
+}  // namespace
+
+void add_report_option(CLI::App& app, std::filesystem::path& path) {
+  const CLI::Validator is_built(
+      [](std::string&) -> std::string {
+        if (!kReportTemplate.empty()) return {};
+        return "this program was built without its report page: install Node.js 18 or newer with "
+               "npm (apt-get install npm), then configure and build it again, with access to the "
+               "npm registry";
+      },
+      "");
+  app.add_option("--report", path,
+                 "write the answer as an HTML page with charts, complete in one "
+                 "file")
+      ->type_name("FILE.html")
+      ->check(is_built);
+}
+
+void remember_command_line(int argc, const char* const* argv) {
+  command_line() = "leeway";
+  for (int i = 1; i < argc; ++i) command_line() += " " + as_word(argv[i]);
+}
+
+void write_report(const std::filesystem::path& path, Json answer, Json series) {
+  if (path.empty()) return;
+  answer["command_line"] = command_line();
+  answer["series"] = std::move(series);
+  const std::size_t mark = kReportTemplate.find(kDataMark);
+  std::string page(kReportTemplate.substr(0, mark));
+  page += as_element_text(answer);
+  page += kReportTemplate.substr(mark + kDataMark.size());
+  write_file(path, page);
+}
+
+}  // namespace leeway::cli

@@ -1,0 +1,96 @@
+#include "leeway/sim/scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "leeway/earth/error.hpp"
+
+namespace leeway::sim {
+namespace {
+
+constexpr double kLevellingGravityMps2 = 9.806;
+constexpr double kLeastHeadingRad = 1e-5;
+constexpr double kMostHeadingRad = 10.0 * kRadPerDeg;
+
+void require(bool ok, const char* field, double value, const char* range) {
+  if (ok) return;
+  std::ostringstream message;
+  message << "scene: " << field << " is " << value << ", must be " << range;
+  throw Error(message.str());
+}
+
+/// Of the bias at the start, turn-on and in-run together.
+double bias_sigma(const TriadErrorModel& triad) {
+  return std::hypot(triad.bias_sigma, triad.in_run.sigma);
+}
+
+bool is_withheld(const std::vector<Outage>& outages, double t_s) {
+  return std::any_of(outages.begin(), outages.end(), [t_s](const Outage& o) {
+    return t_s > o.start_s && t_s <= o.start_s + o.duration_s;
+  });
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+  if (!scene.trajectory.motion) throw Error("scene: the trajectory has no motion");
+  validate(scene.imu);
+  validate(scene.gnss.errors);
+  require(scene.duration_s > 0.0 && scene.duration_s <= scene.trajectory.duration_s, "duration_s",
+          scene.duration_s, "> 0 and at most the trajectory's duration");
+  require(scene.imu_rate_hz >= 1.0 && scene.imu_rate_hz <= 1e4, "imu_rate_hz", scene.imu_rate_hz,
+          "1 to 1e4");
+  require(scene.gnss.interval_s >= 1e-3 && scene.gnss.interval_s <= 1e6, "gnss interval_s",
+          scene.gnss.interval_s, "0.001 to 1e6");
+  require(scene.gnss.latency_s >= 0.0 && scene.gnss.latency_s <= 60.0, "gnss latency_s",
+          scene.gnss.latency_s, "0 to 60");
+  require(scene.gnss.outlier_probability >= 0.0 && scene.gnss.outlier_probability <= 0.5,
+          "gnss outlier_probability", scene.gnss.outlier_probability, "0 to 0.5");
+  require(scene.gnss.outlier_sigma_m >= 0.0 && scene.gnss.outlier_sigma_m <= 1e6,
+          "gnss outlier_sigma_m", scene.gnss.outlier_sigma_m, "0 to 1e6");
+  require(scene.budget.limit_m > 0.0 && scene.budget.limit_m <= 1e6, "budget limit_m",
+          scene.budget.limit_m, "> 0 and at most 1e6");
+  require(scene.budget.last_s > 0.0 && scene.budget.last_s <= 1e6, "budget last_s",
+          scene.budget.last_s, "> 0 and at most 1e6");
+  require(scene.imu_divider >= 1 && scene.imu_divider <= 1000, "imu_divider", scene.imu_divider,
+          "1 to 1000");
+  require(scene.trials >= 1, "trials", scene.trials, ">= 1");
+}
+
+void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model) {
+  scene.imu_name = name;
+  scene.imu = model;
+  scene.filter.imu = model;
+}
+
+InitialSigma initial_sigma(const Scene& scene) {
+  if (scene.initial) return *scene.initial;
+  const double earth_rate_radps =
+      wgs84::kRotationRateRadps * std::cos(scene.trajectory.plane.origin.lat_rad);
+  InitialSigma sigma;
+  sigma.tilt_rad = bias_sigma(scene.imu.accelerometer) / kLevellingGravityMps2;
+  sigma.heading_rad =
+      std::clamp(bias_sigma(scene.imu.gyro) / earth_rate_radps, kLeastHeadingRad, kMostHeadingRad);
+  sigma.velocity_mps = scene.gnss.errors.velocity_sigma_n_mps.maxCoeff();
+  sigma.position_m = std::hypot(scene.gnss.errors.position_sigma_n_m.head<2>().maxCoeff(),
+                                scene.gnss.errors.correlated_sigma_n_m.head<2>().maxCoeff());
+  return sigma;
+}
+
+double scored_part_s(const Scene& scene) {
+  return std::max(
+      {scene.budget.last_s, 2.0 * scene.gnss.interval_s, scene.trajectory.period_s.value_or(0.0)});
+}
+
+std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s) {
+  std::vector<double> times_s;
+  for (std::int64_t k = 1;; ++k) {
+    const double t_s = static_cast<double>(k) * gnss.interval_s;
+    if (t_s > duration_s * (1.0 + 1e-12)) return times_s;
+    if (!is_withheld(gnss.outages, t_s)) times_s.push_back(std::min(t_s, duration_s));
+  }
+}
+
+}  // namespace leeway::sim

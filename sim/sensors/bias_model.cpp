@@ -1,0 +1,49 @@
+#include "leeway/sim/sensors/bias_model.hpp"
+
+#include <string>
+
+#include "leeway/earth/error.hpp"
+
+namespace leeway::sim {
+namespace {
+
+TriadErrorModel wandering(TriadErrorModel triad, double tau_s) {
+  triad.in_run = {triad.bias_sigma, tau_s};
+  triad.bias_sigma = 0.0;
+  return triad;
+}
+
+}  // namespace
+
+std::string_view name(BiasModel model) {
+  return model == BiasModel::kConstant ? "constant" : "gauss_markov";
+}
+
+BiasModel bias_model_from_name(std::string_view wanted) {
+  for (const BiasModel model : kBiasModels) {
+    if (name(model) == wanted) return model;
+  }
+  throw Error("bias model '" + std::string(wanted) +
+              "' is unknown: accepted are constant, gauss_markov");
+}
+
+BiasModel bias_model_of(const ImuErrorModel& model) {
+  const bool drifts = model.accelerometer.in_run.sigma > 0.0 || model.gyro.in_run.sigma > 0.0;
+  return drifts ? BiasModel::kGaussMarkov : BiasModel::kConstant;
+}
+
+ImuErrorModel with_bias_model(const ImuErrorModel& model, BiasModel bias, double tau_s) {
+  if (bias_model_of(model) == BiasModel::kGaussMarkov) {
+    throw Error(
+        "the IMU model states an in-run drift of its own: a bias model (constant, "
+        "gauss_markov) can be chosen for the Table 1 classes only");
+  }
+  if (!(tau_s > 0.0)) throw Error("bias tau_s is " + std::to_string(tau_s) + ", must be > 0");
+  if (bias == BiasModel::kConstant) return model;
+  ImuErrorModel changed = model;
+  changed.accelerometer = wandering(model.accelerometer, tau_s);
+  changed.gyro = wandering(model.gyro, tau_s);
+  return changed;
+}
+
+}  // namespace leeway::sim

@@ -1,0 +1,319 @@
+#include "sim/tools/toml_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "leeway/earth/error.hpp"
+#include "sim/tools/closest_name.hpp"
+
+namespace leeway::sim {
+namespace {
+
+// Converting a limit to the unit of a key and back may cost an ulp or two.
+constexpr double kRounding = 1e-12;
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kLongest = 80;
+  return "'" + std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? ".." : "") + "'";
+}
+
+std::string key_of(const Quantity& quantity, const Unit* unit) {
+  std::string key(quantity.name);
+  if (unit != nullptr) key += "_" + std::string(unit->key);
+  return key;
+}
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator) {
+  std::string text;
+  for (const std::string& word : words) {
+    if (!text.empty()) text += separator;
+    text += word;
+  }
+  return text;
+}
+
+std::vector<std::string> keys_of(const Quantity& quantity) {
+  std::vector<std::string> keys;
+  for (const Unit* unit : quantity.units) {
+    if (unit != nullptr) keys.push_back(key_of(quantity, unit));
+  }
+  if (keys.empty()) keys.emplace_back(quantity.name);
+  return keys;
+}
+
+/// The limits in words, in a unit that is `si` in SI.
+std::string range_text(const Limits& limits, double value, double si) {
+  const double high = limits.high / si;
+  const double low = limits.low / si;
+  if (limits.or_zero && std::abs(value) < low && (value > 0.0 || limits.either_sign)) {
+    return "must be 0, or at least " + text_of(low) + " like that of a real sensor";
+  }
+  const double least = limits.either_sign ? -high : limits.or_zero ? 0.0 : low;
+  return "must be a number from " + text_of(least) + " to " + text_of(high);
+}
+
+}  // namespace
+
+std::string likely_intent(const std::vector<std::string>& quoted_keys) {
+  return quoted_keys.empty() ? "" : "; did you mean " + joined(quoted_keys, " or ") + "?";
+}
+
+bool Limits::contain(double value_si) const {
+  const double size = either_sign ? std::abs(value_si) : value_si;
+  if (or_zero && size == 0.0) return true;
+  return size >= low - kRounding * std::abs(low) && size <= high + kRounding * std::abs(high);
+}
+
+std::size_t TomlValue::size() const { return is_array() ? node_->as_array()->size() : 0; }
+
+std::optional<double> TomlValue::as_written() const {
+  if (node_->is_integer()) return static_cast<double>(node_->as_integer()->get());
+  if (node_->is_floating_point()) return node_->as_floating_point()->get();
+  return {};
+}
+
+std::string TomlValue::text() const { return text_of(as_written().value_or(NAN)); }
+
+double TomlValue::number(std::string_view otherwise) const {
+  const double si = unit_ != nullptr ? unit_->si : 1.0;
+  const std::optional<double> value = as_written();
+  if (!value) {
+    fail("has another type than wanted: " + range_text(quantity_.limits, NAN, si) +
+         std::string(otherwise));
+  }
+  if (!quantity_.limits.contain(*value * si)) {
+    const auto anything = [](double) { return true; };
+    fail("is " + text_of(*value) + ": " + range_text(quantity_.limits, *value, si) +
+         std::string(otherwise) + likely_intent(likely_keys(anything)));
+  }
+  return *value * si;
+}
+
+std::vector<std::string> TomlValue::likely_keys(
+    const std::function<bool(double si)>& pleases) const {
+  const double value = as_written().value_or(0.0);
+  std::vector<std::string> keys;
+  for (const Unit* unit : quantity_.units) {
+    if (unit == nullptr || unit == unit_ || value == 0.0) continue;
+    const double si = value * unit->si;
+    if (quantity_.limits.contain(si) && pleases(si))
+      keys.push_back(in_quotes(key_of(quantity_, unit)));
+  }
+  return keys;
+}
+
+std::vector<TomlValue> TomlValue::entries(std::size_t count, std::string_view otherwise) const {
+  if (!is_array() || size() != count) {
+    fail("must be " + std::to_string(count) + " entries" + std::string(otherwise));
+  }
+  std::vector<TomlValue> values;
+  for (const toml::node& entry : *node_->as_array()) {
+    values.emplace_back(*document_, *key_, quantity_, unit_, entry);
+  }
+  return values;
+}
+
+std::vector<double> TomlValue::numbers(std::size_t count, std::string_view otherwise) const {
+  std::vector<double> values;
+  for (const TomlValue& entry : entries(count, otherwise)) {
+    values.push_back(entry.number(otherwise));
+  }
+  return values;
+}
+
+Eigen::Vector3d TomlValue::vector3(std::string_view otherwise) const {
+  return Eigen::Vector3d(numbers(3, otherwise).data());
+}
+
+void TomlValue::fail(const std::string& what) const {
+  document_->fail(node_->source(), in_quotes(key()) + " " + what);
+}
+
+void TomlValue::fail_at_key(const std::string& what) const {
+  document_->fail(key_->source(), in_quotes(key()) + " " + what);
+}
+
+const toml::node* TomlSection::declare(std::string_view key) {
+  declared_.push_back({key, {std::string(key)}});
+  return table_.get(key);
+}
+
+std::optional<TomlValue> TomlSection::value(const Quantity& quantity) {
+  declared_.push_back({quantity.name, keys_of(quantity)});
+  std::optional<TomlValue> found;
+  for (const auto& [key, node] : table_) {
+    const auto& keys = declared_.back().keys;
+    const auto at = std::find(keys.begin(), keys.end(), key.str());
+    if (at == keys.end()) continue;
+    if (found) {
+      document_.fail(key.source(), in_quotes(key.str()) + " and " + in_quotes(found->key()) +
+                                       " are the same quantity: give one");
+    }
+    const Unit* unit = quantity.units[static_cast<std::size_t>(at - keys.begin())];
+    found.emplace(document_, key, quantity, unit, node);
+  }
+  return found;
+}
+
+std::optional<double> TomlSection::number(const Quantity& quantity) {
+  const auto found = value(quantity);
+  return found ? std::optional(found->number()) : std::nullopt;
+}
+
+std::optional<std::vector<double>> TomlSection::numbers(const Quantity& quantity,
+                                                        std::size_t count) {
+  const auto found = value(quantity);
+  return found ? std::optional(found->numbers(count)) : std::nullopt;
+}
+
+std::optional<std::int64_t> TomlSection::integer(std::string_view key, std::int64_t low,
+                                                 std::int64_t high) {
+  const toml::node* node = declare(key);
+  if (node == nullptr) return {};
+  const auto wanted =
+      "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  if (!node->is_integer()) fail_at(key, wanted);
+  const std::int64_t value = node->as_integer()->get();
+  if (value < low || value > high) fail_at(key, "is " + std::to_string(value) + ": " + wanted);
+  return value;
+}
+
+std::optional<bool> TomlSection::boolean(std::string_view key) {
+  const toml::node* node = declare(key);
+  if (node == nullptr) return {};
+  if (!node->is_boolean()) fail_at(key, "must be true or false");
+  return node->as_boolean()->get();
+}
+
+std::optional<std::string> TomlSection::text(std::string_view key) {
+  const toml::node* node = declare(key);
+  if (node == nullptr) return {};
+  if (!node->is_string()) fail_at(key, "must be text in quotes");
+  return node->as_string()->get();
+}
+
+std::optional<std::size_t> TomlSection::choice(std::string_view key,
+                                               std::span<const std::string_view> names) {
+  const std::optional<std::string> given = text(key);
+  if (!given) return {};
+  const auto found = std::find(names.begin(), names.end(), *given);
+  if (found == names.end()) {
+    fail_at(key, "is unknown: " + in_quotes(*given) + ": " + did_you_mean(*given, names));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+bool TomlSection::table(std::string_view key, const Reader& read) {
+  const toml::node* node = declare(key);
+  if (node == nullptr) return false;
+  if (!node->is_table()) fail_at(key, "must be a section: [" + std::string(key) + "]");
+  TomlSection section(document_, *node->as_table(), std::string(key));
+  read(section);
+  section.finish();
+  return true;
+}
+
+std::size_t TomlSection::tables(std::string_view key, const Reader& read) {
+  const toml::node* node = declare(key);
+  if (node == nullptr) return 0;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || !array->is_homogeneous(toml::node_type::table)) {
+    fail_at(key, "must be a list of sections: [[" + std::string(key) + "]]");
+  }
+  for (const toml::node& entry : *array) {
+    TomlSection section(document_, *entry.as_table(), std::string(key));
+    read(section);
+    section.finish();
+  }
+  return array->size();
+}
+
+void TomlSection::fail(const std::string& what) const { document_.fail(table_.source(), what); }
+
+void TomlSection::fail_at(std::string_view key, const std::string& what) const {
+  const toml::node* node = table_.get(key);
+  document_.fail(node != nullptr ? node->source() : table_.source(), in_quotes(key) + " " + what);
+}
+
+bool TomlSection::is_declared(std::string_view key) const {
+  return std::any_of(declared_.begin(), declared_.end(), [key](const Declared& d) {
+    return std::find(d.keys.begin(), d.keys.end(), key) != d.keys.end();
+  });
+}
+
+void TomlSection::fail_missing() const {
+  const Declared& wanted = declared_.back();
+  const std::string& first = wanted.keys.front();
+  for (const auto& [key, node] : table_) {
+    const bool is_near =
+        key.str() == wanted.name || 3 * edit_distance(key.str(), first) <= first.size();
+    if (is_near && !is_declared(key.str())) fail_unknown(key);
+  }
+  const std::string owner = name_.empty() ? "the file" : "[" + name_ + "]";
+  fail(owner + " needs " + joined(wanted.keys, " or "));
+}
+
+void TomlSection::fail_unknown(const toml::key& key) const {
+  const std::string unknown = "unknown key " + in_quotes(key.str()) + ": ";
+  for (const Declared& declared : declared_) {
+    if (declared.name == key.str()) {
+      document_.fail(key.source(), unknown + "it needs its unit: " + joined(declared.keys, ", "));
+    }
+  }
+  document_.fail(key.source(), unknown + did_you_mean(key.str(), keys()));
+}
+
+std::vector<std::string_view> TomlSection::keys() const {
+  std::vector<std::string_view> all;
+  for (const Declared& declared : declared_) {
+    all.insert(all.end(), declared.keys.begin(), declared.keys.end());
+  }
+  return all;
+}
+
+void TomlSection::finish() const {
+  for (const auto& [key, node] : table_) {
+    if (!is_declared(key.str())) fail_unknown(key);
+  }
+}
+
+TomlDocument TomlDocument::from_file(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  // A directory opens but does not read; neither does an empty file.
+  if (!file || !(text << file.rdbuf())) {
+    throw Error(path.string() + ": cannot be read, or is empty");
+  }
+  return from_text(text.str(), path.string());
+}
+
+TomlDocument TomlDocument::from_text(std::string_view text, std::string name) {
+  TomlDocument document(std::move(name));
+  try {
+    document.root_ = toml::parse(text, document.name_);
+  } catch (const toml::parse_error& error) {
+    document.fail(error.source(), std::string(error.description()));
+  }
+  return document;
+}
+
+void TomlDocument::read(const TomlSection::Reader& read) const {
+  TomlSection root(*this, root_, "");
+  read(root);
+  root.finish();
+}
+
+void TomlDocument::fail(const toml::source_region& where, const std::string& what) const {
+  throw Error(name_ + ":" + std::to_string(where.begin.line) + ":" +
+              std::to_string(where.begin.column) + ": " + what);
+}
+
+}  // namespace leeway::sim
