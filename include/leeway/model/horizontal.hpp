@@ -1,5 +1,5 @@
 /// @file
-/// The size of a horizontal position error as one number, in which a limit is stated.
+/// One number for the size of a horizontal position error: what a limit is stated in.
 #pragma once
 
 #include <Eigen/Core>

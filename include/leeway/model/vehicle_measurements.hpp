@@ -1,7 +1,7 @@
 /// @file
-/// Measurements from the motion of a road vehicle and from its simple sensors, with the signs of
-/// error_state.hpp. The tests compare each Jacobian with central differences.
-/// Source: Groves (2013), sections 15.3 (constraints) and 16.1.2 (odometer).
+/// What a road vehicle's motion and its simple sensors say, as measurements of the filter.
+/// Groves (2013) sections 15.3 (constraints) and 16.1.2 (odometer), signs by error_state.hpp; each
+/// Jacobian against central differences in the tests.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,32 +12,30 @@
 
 namespace leeway {
 
-/// Velocity of the rear axle over ground, m/s, in vehicle axes (forward, right, down), for an
-/// estimate.
-/// @param omega_ib_b_radps  measured angular rate, bias not yet removed
+/// Velocity of the rear axle over ground, vehicle axes (forward, right, down), for an estimate.
+/// @param omega_ib_b_radps  measured angular rate (bias not yet removed)
 Eigen::Vector3d rear_axle_velocity(const Estimate& estimate, const VehicleVector& vehicle,
                                    const Eigen::Vector3d& omega_ib_b_radps);
 
-/// The non-holonomic constraint: the rear axle has no velocity to the right and none down. 2 rows,
-/// vehicle axes. Source: Groves (2013) (15.20).
+/// The rear axle moves along the vehicle's forward axis: no velocity to the right, none down.
+/// 2 rows. Source: Groves (2013) (15.20).
 Measurement non_holonomic(const Estimate& estimate, const VehicleVector& vehicle,
                           const Eigen::Vector3d& omega_ib_b_radps, double sigma_right_mps,
                           double sigma_down_mps);
 
-/// The odometer reading: (1 + scale) times the forward speed of the rear axle, negative backwards.
-/// 1 row.
+/// The rear axle's forward speed, backwards negative, times (1 + scale). 1 row.
 Measurement odometer_speed(double speed_mps, double sigma_mps, const Estimate& estimate,
                            const VehicleVector& vehicle, const Eigen::Vector3d& omega_ib_b_radps);
 
-/// Zero velocity relative to the Earth. 3 rows, ECEF axes. Source: Groves (2013) (15.13).
+/// No velocity relative to the Earth. 3 rows, ECEF. Source: Groves (2013) (15.13).
 Measurement zero_velocity(const Estimate& estimate, double sigma_mps);
 
-/// Zero angular rate relative to the Earth. 3 rows, body axes. Source: Groves (2013) (15.16).
-/// @param mean_omega_ib_b_radps  mean measured rate over a time at rest, bias not yet removed
+/// No rotation relative to the Earth. 3 rows, body axes. Source: Groves (2013) (15.16).
+/// @param mean_omega_ib_b_radps  measured rate, the mean of a while at rest
 Measurement zero_angular_rate(const Estimate& estimate,
                               const Eigen::Vector3d& mean_omega_ib_b_radps, double sigma_radps);
 
-/// The barometer reading: height of the IMU above the ellipsoid plus an offset, m. 1 row.
+/// Height of the IMU above the ellipsoid plus an offset. 1 row.
 Measurement barometric_height(double height_m, double sigma_m, const Estimate& estimate,
                               const VehicleVector& vehicle);
 
