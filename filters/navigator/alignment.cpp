@@ -4,7 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/model/gnss_measurement.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "leeway/earth/error.hpp"
+#include "leeway/model/claimed_solution.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/heading.hpp"
 #include "leeway/model/vehicle_measurements.hpp"
 
 namespace leeway {
@@ -75,7 +78,8 @@ void NavigatorState::begin_vehicle() {
       vehicle.P(angle, angle) = std::max(vehicle.P(angle, angle), kFound * kFound);
     }
   }
-  bank_->for_each([&](Ekf& filter) { filter.estimate_vehicle(vehicle); });
+  bank_->for_each(
+      [&](Ekf& filter) { edit(filter, [&](Belief& belief) { belief.vehicle = vehicle; }); });
 }
 
 void NavigatorState::integrate(const ImuIncrement& inc) {
@@ -92,19 +96,19 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
 void NavigatorState::open_heading() {
   if (!bank_->collapsed()) return;
   const Ekf& filter = bank_->best();
-  const double sigma_rad = filter.heading_sigma_rad();
+  const double sigma_rad = heading_sigma_rad(filter);
   const ErrorMatrix P = filter.covariance();
   // What a new filter would refuse to start from goes on in the old one: push does not throw.
   constexpr double kLowestM = 6.35e6;  // from the Earth's centre
-  const bool can_start = filter.is_sane() && P.diagonal().minCoeff() > 0.0 &&
+  const bool can_start = is_sane(filter.estimate(), P) && P.diagonal().minCoeff() > 0.0 &&
                          filter.estimate().nav.r_e_m.norm() > kLowestM;
   if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
-  VehicleState vehicle = filter.vehicle();
-  vehicle.cross.setZero();
-  const bool estimates_vehicle = filter.estimates_vehicle();
-  bank_ = bank_around(filter.config(), filter.estimate(), P, sigma_rad);
-  if (!estimates_vehicle) return;
-  bank_->for_each([&](Ekf& member) { member.estimate_vehicle(vehicle); });
+  std::optional<VehicleState> vehicle = filter.vehicle();
+  bank_ = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
+  if (!vehicle) return;
+  vehicle->cross.setZero();
+  bank_->for_each(
+      [&](Ekf& member) { edit(member, [&](Belief& belief) { belief.vehicle = vehicle; }); });
 }
 
 void NavigatorState::bridge(Time to) {
@@ -113,7 +117,7 @@ void NavigatorState::bridge(Time to) {
     aligner_ = Aligner(alignment_of(config_), filter_of(config_));
     return;
   }
-  bank_->for_each([&](Ekf& filter) { filter.coast(to); });
+  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to); });
 }
 
 Verdict NavigatorState::fuse(const GnssFix& fix) {
@@ -121,9 +125,9 @@ Verdict NavigatorState::fuse(const GnssFix& fix) {
     align(fix);
     return Verdict::kAligning;
   }
-  if (bank_->best().heading_sigma_rad() > kOpenRad) open_heading();
+  if (heading_sigma_rad(bank_->best()) > kOpenRad) open_heading();
   last_update_ = bank_->update([&](Ekf& filter) {
-    const bool hides = aiding_.at_rest() && filter.rest_hides_heading();
+    const bool hides = aiding_.at_rest() && rest_hides_heading(filter);
     return filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
                                hides ? Held::kHeadingAndTurn : Held::kNothing});
   });
@@ -175,7 +179,9 @@ void NavigatorState::follow_drift() {
   constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
   constexpr double kShare = 0.1;       // of the squared distance, at each fix
   if (!position_noise_.has_full_window() || position_noise_.nis_ratio() < kDriftRatio) return;
-  bank_->best().widen_position(kShare / 3.0 * last_update_.position_innovation_e_m.squaredNorm());
+  const double variance_m2 = kShare / 3.0 * last_update_.position_innovation_e_m.squaredNorm();
+  edit(bank_->best(),
+       [&](Belief& belief) { belief.P.diagonal().segment<3>(kDr).array() += variance_m2; });
 }
 
 Verdict NavigatorState::locked_out(const GnssFix& fix) {
@@ -183,7 +189,9 @@ Verdict NavigatorState::locked_out(const GnssFix& fix) {
     case GateRecovery::Remedy::kWait:
       return Verdict::kGated;
     case GateRecovery::Remedy::kWiden:
-      bank_->for_each([](Ekf& filter) { filter.widen(GateRecovery::kWidening); });
+      bank_->for_each([](Ekf& filter) {
+        edit(filter, [](Belief& belief) { widen(belief, GateRecovery::kWidening); });
+      });
       return Verdict::kGated;
     case GateRecovery::Remedy::kRestart:
       bank_->for_each([&fix](Ekf& filter) { restart_motion(filter, fix); });
@@ -208,13 +216,14 @@ void NavigatorState::realign() {
 
 void NavigatorState::guard_numbers() {
   bool sane = true;
-  bank_->for_each([&](Ekf& filter) { sane = sane && filter.is_sane(); });
+  bank_->for_each(
+      [&](Ekf& filter) { sane = sane && is_sane(filter.estimate(), filter.kernel().matrix()); });
   if (!sane) realign();
 }
 
 void NavigatorState::watch_covariance() {
   bank_->for_each([this](Ekf& filter) {
-    if (!filter.repair_covariance()) ++repairs_;
+    if (!repair_covariance(filter)) ++repairs_;
   });
 }
 
@@ -230,14 +239,14 @@ void NavigatorState::find_mount() {
 Verdict NavigatorState::fuse(const OdometerSpeed& odometer) {
   return aid(config_.vehicle.odometer, [&odometer](const Ekf& filter) {
     return odometer_speed(odometer.speed_mps, odometer.sigma_mps, filter.estimate(),
-                          filter.vehicle().value, filter.omega_ib_b_radps());
+                          filter.vehicle()->value, filter.inertial().omega_ib_b_radps());
   });
 }
 
 Verdict NavigatorState::fuse(const BarometricHeight& barometer) {
   return aid(config_.vehicle.barometer, [&barometer](const Ekf& filter) {
     return barometric_height(barometer.height_m, barometer.sigma_m, filter.estimate(),
-                             filter.vehicle().value);
+                             filter.vehicle()->value);
   });
 }
 

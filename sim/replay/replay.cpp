@@ -132,7 +132,7 @@ class Branch {
                ecef_from_geodetic(truth->nav.position));
     } else {
       if (!withheld_->position) return;
-      const Eigen::Vector3d& lever = navigator_->filter().config().lever_arm_b_m;
+      const Eigen::Vector3d& lever = navigator_->filter().inertial().config().lever_arm_b_m;
       m = miss(moved_to(t, estimate.nav, antenna_position_e(estimate, lever)),
                withheld_->position->r_e_m);
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sensors/imu.hpp"

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "leeway/model/claimed_solution.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "tests/bench/lap.hpp"
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "leeway/earth/earth.hpp"
+
 namespace leeway::cli {
 namespace {
 

@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "leeway/ekf/ekf_config.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/gnss_log.hpp"
 #include "sim/cli/commands.hpp"

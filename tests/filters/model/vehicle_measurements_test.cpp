@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "tests/filters/model/random_state.hpp"
 #include "tests/support/near.hpp"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/filters/navigator/same_bits.hpp"

@@ -54,7 +54,7 @@ TEST_CASE("budget --json --write: the contract, and a filter that campaign takes
   CHECK(campaign.exit_code == 0);
   const double rms_m = campaign.json().at("results").at("rms_horizontal_m");
   const double in_budget_m = results.at("reduced").at("rms_horizontal_m");
-  CHECK(std::abs(rms_m - in_budget_m) < 1e-3);  // Ekf against KernelEkf: rounding
+  CHECK(std::abs(rms_m - in_budget_m) < 1e-3);  // Ekf against BasicEkf: rounding
 }
 
 TEST_CASE("budget prints every term with both figures and its cost, then the models") {
