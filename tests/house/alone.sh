@@ -3,7 +3,8 @@
 # public header that is not the first include of a source: every file includes what it uses.
 # usage: alone.sh BUILD_DIR, configured with compile_commands.json
 set -euo pipefail
-readonly commands=$(realpath "$1")/compile_commands.json
+commands=$(realpath "$1")/compile_commands.json
+readonly commands
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 # The commands of the sources, to parse only; two of what JSON escapes occur, \" and \\.
@@ -28,5 +29,6 @@ any=$(grep -m 1 -E '/filters/[^ ]*$' <<<"$all")
 for header in $(unchecked_headers); do
   all+=$'\n'"${any% *} -x c++ include/$header"
 done
+# shellcheck disable=SC2016  # for the inner bash
 xargs -d '\n' -n 1 -P "$(nproc)" bash -c 'eval "$1" || { echo "alone: $1" >&2; exit 1; }' _ <<<"$all"
 echo "$(wc -l <<<"$all") files parsed, each by itself"

@@ -2,7 +2,8 @@
 # check.sh must find each disorder in a small house, and nothing in the house without it.
 # usage: check_test.sh
 set -euo pipefail
-readonly check=$(dirname "${BASH_SOURCE[0]}")/check.sh
+check=$(dirname "${BASH_SOURCE[0]}")/check.sh
+readonly check
 house=$(mktemp -d)
 trap 'rm -rf "$house"' EXIT
 
