@@ -19,34 +19,34 @@ std::size_t checkpoint_capacity(const TimingConfig& timing, double checkpoint_s)
 }
 
 bool same_kind(const Event& a, const Event& b) {
-  if (a.data.index() != b.data.index()) return false;
-  const auto* fix_a = std::get_if<GnssFix>(&a.data);
-  const auto* fix_b = std::get_if<GnssFix>(&b.data);
+  if (a.reading.index() != b.reading.index()) return false;
+  const auto* fix_a = std::get_if<GnssFix>(&a.reading);
+  const auto* fix_b = std::get_if<GnssFix>(&b.reading);
   return fix_a == nullptr || (fix_a->position && fix_b->position) ||
          (fix_a->velocity && fix_b->velocity);
 }
 
 /// The order in which events act.
 bool acts_before(const Event& a, const Event& b) {
-  return a.time != b.time ? a.time < b.time : a.data.index() < b.data.index();
+  return a.time != b.time ? a.time < b.time : a.reading.index() < b.reading.index();
 }
 
 }  // namespace
 
 Timeline::Timeline(const NavigatorConfig& config)
     : config_(config),
-      fusion_(config),
+      state_(config),
       steps_(step_capacity(config.timing, kCheckpointS), Step{}),
       events_(kMaxEvents, Event{}),
-      checkpoints_(checkpoint_capacity(config.timing, kCheckpointS), Checkpoint{fusion_}) {}
+      checkpoints_(checkpoint_capacity(config.timing, kCheckpointS), Checkpoint{state_}) {}
 
-void Timeline::restart(const NavigatorState& fusion, Time now) {
-  fusion_ = fusion;
+void Timeline::restart(const NavigatorState& state, Time now) {
+  state_ = state;
   now_ = now;
   steps_forgotten_ += steps_.size();
   steps_.clear();
   checkpoints_.clear();
-  checkpoints_.push_back({fusion_, now, steps_forgotten_});
+  checkpoints_.push_back({state_, now, steps_forgotten_});
   while (!events_.empty() && events_.front().time < now) {
     const Event& event = events_.front();
     if (!event.done) refuse(event, Verdict::kLate);
@@ -55,13 +55,13 @@ void Timeline::restart(const NavigatorState& fusion, Time now) {
 }
 
 void Timeline::push(const Step& step) {
-  if (!now_) restart(fusion_, step.inc.time - duration_from_seconds(step.inc.dt_s));
+  if (!now_) restart(state_, step.inc.time - duration_from_seconds(step.inc.dt_s));
   if (steps_.full()) {
     if (checkpoints_.size() > 1) checkpoints_.pop_front();
     forget_old();
   }
   // A checkpoint further back than the room for steps leads nowhere.
-  if (steps_.full()) restart(fusion_, *now_);
+  if (steps_.full()) restart(state_, *now_);
   steps_.push_back(step);
   run(step);
   keep_checkpoint();
@@ -87,12 +87,11 @@ void Timeline::integrate(const Step& step, Time to, ImuIncrement& rest) {
   } else {
     rest.dt_s = 0.0;
   }
-  step.is_gap ? fusion_.bridge(to) : fusion_.integrate(before);
+  step.is_gap ? state_.bridge(to) : state_.integrate(before);
 }
 
 void Timeline::decide(Event& event) {
-  const Verdict verdict =
-      std::visit([this](const auto& measurement) { return fusion_.fuse(measurement); }, event.data);
+  const Verdict verdict = state_.fuse(event.reading);
   if (event.counts) {
     if (event.verdict != Verdict::kAccepted) {
       --ledger_[static_cast<std::size_t>(event.verdict)];
@@ -115,7 +114,7 @@ bool Timeline::is_checkpoint_due() const {
 void Timeline::keep_checkpoint() {
   if (!is_checkpoint_due()) return;
   if (checkpoints_.full()) checkpoints_.pop_front();
-  checkpoints_.push_back({fusion_, *now_, steps_forgotten_ + steps_.size()});
+  checkpoints_.push_back({state_, *now_, steps_forgotten_ + steps_.size()});
   const Duration lateness = duration_from_seconds(config_.timing.max_lateness_s);
   while (checkpoints_.size() > 1 && checkpoints_[1].time < *now_ - lateness) {
     checkpoints_.pop_front();
@@ -162,13 +161,13 @@ void Timeline::make_room() {
     checkpoints_.pop_front();
     forget_old();
   }
-  if (events_.full() && events_.front().done) restart(fusion_, *now_);
+  if (events_.full() && events_.front().done) restart(state_, *now_);
 }
 
 void Timeline::rewind(std::size_t checkpoint) {
   while (checkpoints_.size() > checkpoint + 1) checkpoints_.pop_back();
   const Checkpoint& from = checkpoints_.back();
-  fusion_ = from.fusion;
+  state_ = from.state;
   now_ = from.time;
   for (std::size_t k = 0; k < events_.size(); ++k) {
     if (events_[k].time > from.time) events_[k].done = false;
@@ -177,7 +176,7 @@ void Timeline::rewind(std::size_t checkpoint) {
   for (std::size_t k = first; k < steps_.size(); ++k) {
     run(steps_[k]);
     if (is_checkpoint_due() && !checkpoints_.full()) {
-      checkpoints_.push_back({fusion_, *now_, steps_forgotten_ + k + 1});
+      checkpoints_.push_back({state_, *now_, steps_forgotten_ + k + 1});
     }
   }
 }

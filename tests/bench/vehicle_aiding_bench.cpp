@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "leeway/model/vehicle_measurements.hpp"
-#include "leeway/navigator/vehicle_aiding.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 
@@ -64,11 +64,12 @@ BENCHMARK_CAPTURE(run, non_holonomic, [](const Ekf& filter) {
                        0.1);
 })->Name("non-holonomic");
 BENCHMARK_CAPTURE(run, odometer, [](const Ekf& filter) {
-  return odometer_speed(20.0, 0.1, filter.estimate(), filter.vehicle().value,
-                        filter.omega_ib_b_radps());
+  return measurement(OdometerSpeed{{}, 20.0, 0.1}, filter.estimate(), filter.vehicle().value,
+                     filter.omega_ib_b_radps());
 })->Name("odometer");
 BENCHMARK_CAPTURE(run, barometer, [](const Ekf& filter) {
-  return barometric_height(0.0, 1.0, filter.estimate(), filter.vehicle().value);
+  return measurement(BarometricHeight{{}, 0.0, 1.0}, filter.estimate(), filter.vehicle().value,
+                     filter.omega_ib_b_radps());
 })->Name("barometer");
 
 }  // namespace

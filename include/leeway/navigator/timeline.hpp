@@ -6,20 +6,18 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <variant>
 
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/navigator_state.hpp"
 #include "leeway/navigator/ring_buffer.hpp"
-#include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sensors/imu.hpp"
-#include "leeway/sensors/vehicle_sensors.hpp"
 
 namespace leeway {
 
-/// A measurement, at the time it was valid. Those of one time act in the order of the variant.
+/// A measurement, at the time it was valid. Those of one time act in the order of the readings.
 struct Event {
   Time time{};
-  std::variant<GnssFix, OdometerSpeed, BarometricHeight> data{};
+  Reading reading{};
   bool counts{true};  ///< false: the second half of a fix that was cut in two
   bool done{false};   ///< fused up to the newest IMU data
   Verdict verdict{Verdict::kAccepted};
@@ -40,7 +38,7 @@ class Timeline {
   explicit Timeline(const NavigatorConfig& config);
 
   /// Forgets everything and goes on from here. Events from before are late.
-  void restart(const NavigatorState& fusion, Time now);
+  void restart(const NavigatorState& state, Time now);
 
   /// @pre step.inc.time is later than every step before and step.inc reaches back to the last one.
   void push(const Step& step);
@@ -50,7 +48,7 @@ class Timeline {
   /// not taken: kLate, kDuplicate, kOverflow. All but kAccepted is in the ledger.
   Verdict push(const Event& event);
 
-  const NavigatorState& fusion() const { return fusion_; }
+  const NavigatorState& state() const { return state_; }
   const std::optional<Time>& now() const { return now_; }
 
   /// Verdicts on events, by kind. An event that is judged again counts once, with its last verdict.
@@ -62,11 +60,11 @@ class Timeline {
   template <class Archive>
   void visit(Archive& archive) {
     bool has_begun = now_.has_value();
-    Checkpoint oldest = has_begun ? checkpoints_.front() : Checkpoint{fusion_};
-    archive(has_begun, oldest.fusion, oldest.time, oldest.next_step, steps_forgotten_, ledger_,
+    Checkpoint oldest = has_begun ? checkpoints_.front() : Checkpoint{state_};
+    archive(has_begun, oldest.state, oldest.time, oldest.next_step, steps_forgotten_, ledger_,
             steps_, events_);
     if constexpr (Archive::kReads) {
-      fusion_ = oldest.fusion;
+      state_ = oldest.state;
       now_.reset();
       checkpoints_.clear();
       if (!has_begun) return;
@@ -77,7 +75,7 @@ class Timeline {
 
  private:
   struct Checkpoint {
-    NavigatorState fusion;
+    NavigatorState state;
     Time time{};
     std::uint64_t next_step{0};  // counted from the first ever
   };
@@ -95,7 +93,7 @@ class Timeline {
   void make_room();
 
   NavigatorConfig config_;
-  NavigatorState fusion_;
+  NavigatorState state_;
   RingBuffer<Step> steps_;
   RingBuffer<Event> events_;  // by time, then kind
   RingBuffer<Checkpoint> checkpoints_;
