@@ -1,12 +1,10 @@
 /// @file
-/// Odometer: the reading, how its log is called and spelled, and what it says of the state.
+/// Odometer: the reading, the words and columns of its log, and what it says of the state.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "leeway/earth/time.hpp"
-#include "leeway/model/measurement.hpp"
-#include "leeway/model/vehicle_state.hpp"
+#include "leeway/model/vehicle_measurements.hpp"
 #include "leeway/navigator/vehicle_aiding.hpp"
 
 namespace leeway {
@@ -24,9 +22,20 @@ struct OdometerSpeed {
   static constexpr bool VehicleConfig::*kIsOn = &VehicleConfig::odometer;
 };
 
-/// The rear axle's forward speed, times (1 + scale). 1 row. Source: Groves (2013) section 16.1.2.
+/// The rear axle's forward speed times (1 + scale). 1 row. Source: Groves (2013) section 16.1.2.
 /// @param omega_ib_b_radps  measured angular rate (bias not yet removed)
-Measurement measurement(const OdometerSpeed& odometer, const Estimate& estimate,
-                        const VehicleVector& vehicle, const Eigen::Vector3d& omega_ib_b_radps);
+inline Measurement measurement(const OdometerSpeed& odometer, const Estimate& estimate,
+                               const VehicleVector& vehicle,
+                               const Eigen::Vector3d& omega_ib_b_radps) {
+  const RearAxle axle(estimate, vehicle, omega_ib_b_radps);
+  const double scale = 1.0 + vehicle(kOdometerScale);
+  Measurement m(1);
+  m.innovation(0) = odometer.speed_mps - scale * axle.v_mps.x();
+  m.H = scale * axle.H.topRows<1>();
+  m.H_vehicle = scale * axle.H_vehicle.topRows<1>();
+  m.H_vehicle(0, kOdometerScale) = axle.v_mps.x();
+  m.R(0, 0) = odometer.sigma_mps * odometer.sigma_mps;
+  return m;
+}
 
 }  // namespace leeway
