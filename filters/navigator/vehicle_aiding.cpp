@@ -4,6 +4,7 @@
 
 #include "leeway/model/heading.hpp"
 #include "leeway/model/vehicle_measurements.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {
@@ -17,11 +18,7 @@ constexpr double kOpenHeadingRightM = 1.0;
 
 VehicleConfig VehicleConfig::car() {
   VehicleConfig config;
-  config.zero_velocity = true;
-  config.zero_angular_rate = true;
-  config.non_holonomic = true;
-  config.odometer = true;
-  config.barometer = true;
+  for (const VehiclePart& part : kVehicleParts) config.*part.is_on = true;
   return config;
 }
 

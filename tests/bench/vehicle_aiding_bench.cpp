@@ -3,7 +3,7 @@
 
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/vehicle_measurements.hpp"
-#include "leeway/navigator/vehicle_aiding.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 
@@ -65,11 +65,12 @@ BENCHMARK_CAPTURE(run, non_holonomic, [](const Ekf& filter) {
                        filter.inertial().omega_ib_b_radps(), 0.1, 0.1);
 })->Name("non-holonomic");
 BENCHMARK_CAPTURE(run, odometer, [](const Ekf& filter) {
-  return odometer_speed(20.0, 0.1, filter.estimate(), filter.vehicle()->value,
-                        filter.inertial().omega_ib_b_radps());
+  return measurement(OdometerSpeed{{}, 20.0, 0.1}, filter.estimate(), filter.vehicle()->value,
+                     filter.inertial().omega_ib_b_radps());
 })->Name("odometer");
 BENCHMARK_CAPTURE(run, barometer, [](const Ekf& filter) {
-  return barometric_height(0.0, 1.0, filter.estimate(), filter.vehicle()->value);
+  return measurement(BarometricHeight{{}, 0.0, 1.0}, filter.estimate(), filter.vehicle()->value,
+                     filter.inertial().omega_ib_b_radps());
 })->Name("barometer");
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"

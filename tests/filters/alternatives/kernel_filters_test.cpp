@@ -12,6 +12,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "tests/filters/model/random_state.hpp"
 #include "tests/filters/navigator/recording.hpp"

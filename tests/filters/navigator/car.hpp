@@ -11,7 +11,6 @@
 #include "leeway/earth/rotation.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
-#include "leeway/sensors/vehicle_sensors.hpp"
 #include "leeway/sim/motion/waypoints.hpp"
 #include "tests/filters/navigator/recording.hpp"
 
