@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sim/compare/variant_filter.hpp"
+#include "sim/trials/player.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -24,16 +25,19 @@ class Runner final : public VariantRun {
   explicit Runner(Filter filter) : filter_(std::move(filter)) {}
 
   void replay(const RecordedTrial& trial, const Observer& observer) override {
-    auto next = trial.fixes.begin();
-    for (std::size_t k = 0; k < trial.imu.size(); ++k) {
-      filter_.predict(trial.imu[k]);
-      if (next == trial.fixes.end()) continue;
-      if (k == next->at && k < next->arrives) when_valid_ = filter_;
-      if (k != next->arrives) continue;
-      if (observer && next->truth) observe(filter_, *next->truth, observer);
-      use(*next, trial);
-      ++next;
-    }
+    play(
+        trial.imu.size(), 1, trial.fixes,
+        [&](std::size_t k) {
+          filter_.predict(trial.imu[k]);
+          return true;
+        },
+        [&](const RecordedTrial::Fix& fix) {
+          if (fix.at < fix.arrives) when_valid_ = filter_;
+        },
+        [&](const RecordedTrial::Fix& fix) {
+          if (observer && fix.truth) observe(filter_, *fix.truth, observer);
+          use(fix, trial);
+        });
   }
 
  private:

@@ -192,14 +192,6 @@ TruePath::TruePath(const TrialPlan& trial_plan, const StrapdownPolicy& full) : p
   }
 }
 
-std::vector<TrialPlan::Fix> arriving_fixes(const TrialPlan& plan) {
-  std::vector<TrialPlan::Fix> fixes;
-  for (const TrialPlan::Fix& fix : plan.fixes()) {
-    if (fix.arrives < plan.increments().size()) fixes.push_back(fix);
-  }
-  return fixes;
-}
-
 FixRows fix_rows(const TruePath& path, std::size_t increment, const Eigen::Vector3d& lever_arm_b_m,
                  double weight) {
   const NavState& nav = path.states[increment + 1];

@@ -8,6 +8,7 @@
 #include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "sim/reduce/paired_covariance.hpp"
+#include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 
@@ -19,9 +20,6 @@ struct TruePath {
   const TrialPlan& plan;
   std::vector<NavState> states{};  ///< the start, then the end of every increment
 };
-
-/// Fixes that arrive within the scene, with what every model shares of them.
-std::vector<TrialPlan::Fix> arriving_fixes(const TrialPlan& plan);
 
 /// The rows of a fix at the end of an increment, by the lever arm.
 /// @param weight  of the position, by gnss_position_weight()
