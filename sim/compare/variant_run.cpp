@@ -1,7 +1,7 @@
 #include "sim/compare/variant_run.hpp"
 
+#include <ctime>
 #include <optional>
-#include <utility>
 
 #include "sim/compare/variant_filter.hpp"
 #include "sim/trials/player.hpp"
@@ -10,7 +10,7 @@ namespace leeway::sim {
 namespace {
 
 template <class Filter>
-void observe(const Filter& filter, const Estimate& truth, const VariantRun::Observer& observer) {
+void observe(const Filter& filter, const Estimate& truth, const ScoreObserver& observer) {
   if constexpr (requires { filter.covariance(); }) {
     const ErrorMatrix P = filter.covariance();
     observer(truth, filter.estimate(), &P);
@@ -19,47 +19,32 @@ void observe(const Filter& filter, const Estimate& truth, const VariantRun::Obse
   }
 }
 
+/// A fix that arrives late acts at its own time: the filter goes back there and comes again.
 template <class Filter>
-class Runner final : public VariantRun {
- public:
-  explicit Runner(Filter filter) : filter_(std::move(filter)) {}
-
-  void replay(const RecordedTrial& trial, const Observer& observer) override {
-    play(
-        trial.imu.size(), 1, trial.fixes,
-        [&](std::size_t k) {
-          filter_.predict(trial.imu[k]);
-          return true;
-        },
-        [&](const RecordedTrial::Fix& fix) {
-          if (fix.at < fix.arrives) when_valid_ = filter_;
-        },
-        [&](const RecordedTrial::Fix& fix) {
-          if (observer && fix.truth) observe(filter_, *fix.truth, observer);
-          use(fix, trial);
-        });
-  }
-
- private:
-  /// A fix that arrives late acts at its own time: the filter goes back there and comes again.
-  void use(const RecordedTrial::Fix& fix, const RecordedTrial& trial) {
-    if (fix.arrives > fix.at) filter_ = *when_valid_;
-    filter_.update(fix.fix);
-    for (std::size_t k = fix.at + 1; k <= fix.arrives; ++k) filter_.predict(trial.imu[k]);
-  }
-
-  Filter filter_;
-  std::optional<Filter> when_valid_{};
-};
+void run(Filter& filter, const RecordedTrial& trial, const ScoreObserver& observer) {
+  std::optional<Filter> when_valid;
+  play(
+      trial.imu.size(), 1, trial.fixes, [&](std::size_t k) { filter.predict(trial.imu[k]); },
+      [&](const RecordedTrial::Fix& fix) {
+        if (fix.at < fix.arrives) when_valid = filter;
+      },
+      [&](const RecordedTrial::Fix& fix) {
+        if (observer && fix.truth) observe(filter, *fix.truth, observer);
+        if (fix.at < fix.arrives) filter = *when_valid;
+        filter.update(fix.fix);
+        for (std::size_t k = fix.at + 1; k <= fix.arrives; ++k) filter.predict(trial.imu[k]);
+      });
+}
 
 }  // namespace
 
-std::unique_ptr<VariantRun> make_variant_run(const Variant& variant, const EkfConfig& believed,
-                                             const TrialStart& start) {
-  return visit_variant_filter(
-      variant, believed, start, [](auto filter) -> std::unique_ptr<VariantRun> {
-        return std::make_unique<Runner<decltype(filter)>>(std::move(filter));
-      });
+double run_variant(const Variant& variant, const EkfConfig& believed, const TrialStart& start,
+                   const RecordedTrial& trial, const ScoreObserver& observer) {
+  return visit_variant_filter(variant, believed, start, [&](auto filter) {
+    const std::clock_t begin = std::clock();
+    run(filter, trial, observer);
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  });
 }
 
 }  // namespace leeway::sim
