@@ -15,17 +15,17 @@
 
 namespace leeway::sim {
 
-/// Of filters on the same sensors and fixes, the errors one below the other. A single filter rides
-/// on a track whose biases decay as its own do. Several share one whose biases do not decay: there
-/// each filter's decay is added.
+/// Components of the errors of some filters on the same sensors and fixes, one filter below the
+/// other. A single filter follows a track whose biases decay as its own do. Several share a track
+/// whose biases do not decay: each filter's decay is then added beside it.
 template <int kFilters>
-inline constexpr int kErrorsOf = kFilters* kErrorStates;
+inline constexpr int kErrorsOf{kErrorStates * (kFilters)};
 
-/// Second moment of these errors.
+/// Second moment E[x x^T] of these errors.
 template <int kFilters>
 using ErrorMoment = Eigen::Matrix<double, kErrorsOf<kFilters>, kErrorsOf<kFilters>>;
 
-/// What each filter makes of the innovations of a fix: error' = error - gain innovation.
+/// Gains of each filter on the innovations of a fix: error' = error - gain innovation.
 template <int kFilters>
 using FixGains = Eigen::Matrix<double, kErrorsOf<kFilters>, 6>;
 

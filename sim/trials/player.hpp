@@ -6,9 +6,9 @@
 
 namespace leeway::sim {
 
-/// Calls of one walk, in the order of time: advance(k) at the last of every `step` increments, then
-/// arrives(fix) of the fixes that are on their way, then valid(fix) of the next one, which may
-/// arrive at once.
+/// Walk over a trial in the order of time. It calls advance(k) at the last of every `step`
+/// increments, then arrives(fix) of the fixes that are on their way, then valid(fix) of the next
+/// one, which may arrive at once.
 /// @param fixes    ascending; each has `at` and `arrives`, the increments at whose ends it is valid
 ///                 and known to the filter, both ends of steps
 template <class Fixes, class Advance, class Valid, class Arrives>
