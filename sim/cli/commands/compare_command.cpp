@@ -21,7 +21,6 @@ struct CompareCommand {
   int trials{10};
   std::optional<std::uint64_t> first_seed{};
   sim::CompareOptions compare{};
-  std::filesystem::path csv{};
   std::filesystem::path report{};
   bool json{false};
 };
@@ -57,7 +56,6 @@ int run(const CompareCommand& options) {
     print_comparison(comparison, options.compare.repeat);
   }
   // Last: a file that cannot be written must not cost the minutes that the rest took.
-  if (!options.csv.empty()) write_file(options.csv, comparison_csv(comparison));
   write_report(options.report, answer);
   const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
                                [](const sim::Compared& c) { return c.on_front; });
@@ -84,14 +82,17 @@ void add_compare_command(CLI::App& program, int& exit_code) {
                   "of the runs that are not timed; 0: all processors")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  app->add_option("--csv", options->csv, "write a row for each variant as CSV")->type_name("FILE");
+  // Scripts may still have it.
+  app->add_option("--csv")->group("")->check([](const std::string&) {
+    return "gone: use --json, whose results[] has these rows, and nees_band";
+  });
   add_report_option(*app, options->report);
   app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
   app->footer(
       "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"
       "whenever asked for; costs are of this machine, now.\n"
       "Example:\n"
-      "  leeway compare --scene docs/examples/scenes/square-loop.toml --csv variants.csv");
+      "  leeway compare --scene docs/examples/scenes/square-loop.toml --json");
   app->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

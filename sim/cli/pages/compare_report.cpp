@@ -115,21 +115,4 @@ Json comparison_json(const sim::Comparison& comparison) {
   return rows;
 }
 
-std::string comparison_csv(const sim::Comparison& comparison) {
-  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : ""; };
-  std::string csv =
-      "variant,cost_ns_per_s,cost_least_ns_per_s,cost_most_ns_per_s,rms_horizontal_m,r95_m,nees,"
-      "consistency,trials_diverged,trials_not_finite,front,dominated_by\n";
-  for (const sim::Compared& c : comparison.variants) {
-    const sim::CampaignResult& r = c.accuracy.figures;
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", c.name,
-                       cell(c.cost.median_ns_per_s), cell(c.cost.least_ns_per_s),
-                       cell(c.cost.most_ns_per_s), cell(r.rms_horizontal_m), cell(c.accuracy.r95_m),
-                       cell(nees_of(c.accuracy)), sim::name(sim::consistency_of(c.accuracy)),
-                       r.diverged, r.not_finite, c.on_front ? 1 : 0,
-                       c.dominated_by ? comparison.variants[*c.dominated_by].name : "");
-  }
-  return csv;
-}
-
 }  // namespace leeway::cli

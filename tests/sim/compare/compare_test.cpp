@@ -55,10 +55,10 @@ double claimed_sigma_m(const TrialPlan& plan, const RecordedTrial& trial, double
   Variant variant;
   variant.covariance_interval_s = interval_s;
   TrialScore score;
-  make_variant_run(variant, plan.scene().filter, trial.start)
-      ->replay(trial, [&score](const Estimate& truth, const Estimate& e, const ErrorMatrix* P) {
-        score_epoch(score, truth, e, P);
-      });
+  run_variant(variant, plan.scene().filter, trial.start, trial,
+              [&score](const Estimate& truth, const Estimate& e, const ErrorMatrix* P) {
+                score_epoch(score, truth, e, P);
+              });
   REQUIRE(score.epochs > 0);
   return std::sqrt(score.variance_n_m2.head<2>().sum() / static_cast<double>(score.epochs));
 }
