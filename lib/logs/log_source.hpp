@@ -16,10 +16,6 @@
 
 namespace leeway {
 
-/// The first line that carries something, for telling the format; next() then delivers it again.
-/// @throws Error when there is none, saying what was expected.
-std::string_view first_line(LineReader& lines, std::string_view expected);
-
 /// Blank, or a comment ("#" or "%").
 bool is_blank_or_comment(std::string_view line);
 
@@ -36,11 +32,11 @@ class WeekUnroller {
   Duration offset_{};
 };
 
-/// Row has a `Time time`; Parser is `std::optional<Fault> operator()(std::string_view, Row&)`.
-template <class Row, class Parser>
+/// Rows in the order of a log. A Row has a `Time time`.
+template <class Row>
 class LogSource {
  public:
-  LogSource(LineReader lines, Parser parser)
+  LogSource(LineReader lines, RowParser<Row> parser)
       : lines_(std::move(lines)), parser_(std::move(parser)) {}
 
   /// The next row later than the one before.
@@ -107,7 +103,7 @@ class LogSource {
   }
 
   LineReader lines_;
-  Parser parser_;
+  RowParser<Row> parser_;
   LogSummary report_{};
   std::string_view line_{};    // read last
   std::optional<Row> held_{};  // read ahead to settle() the row before it

@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "leeway/earth/error.hpp"
 #include "lib/logs/csv_header.hpp"
 #include "lib/logs/log_columns.hpp"
 #include "lib/logs/log_source.hpp"
@@ -29,27 +28,21 @@ ScalarRowParser scalar_parser(LineReader& lines, const ScalarColumns& columns) {
                           NamedColumn{columns.value, {0, -columns.largest, columns.largest}}};
   const std::array sigma{NamedColumn{columns.sigma, {1, kLeastSigma, columns.largest, true}}};
   const std::string expected = "a CSV header with " + join(wanted) + " (and " + join(sigma) + ")";
-  CsvHeader header(first_line(lines, expected), lines.path());
-  if (const auto missing = header.missing(wanted); !missing.empty()) {
-    throw Error(lines.path() + ": missing columns " + join(missing) + "; expected " + expected);
-  }
-  header.use(wanted);
+  CsvHeader header = take_csv_header(lines, wanted, expected);
   header.use_group(sigma);
-  lines.next();  // the header
   return {header.parser()};
 }
 
 }  // namespace
 
 struct ScalarLogReader::Impl {
-  LogSource<ScalarRecord, ScalarRowParser> source;
+  LogSource<ScalarRecord> source;
 };
 
 ScalarLogReader::ScalarLogReader(const std::filesystem::path& path, const ScalarColumns& columns) {
   LineReader lines(path);
   ScalarRowParser parser = scalar_parser(lines, columns);
-  impl_ = std::make_unique<Impl>(
-      Impl{LogSource<ScalarRecord, ScalarRowParser>(std::move(lines), std::move(parser))});
+  impl_ = std::make_unique<Impl>(Impl{{std::move(lines), std::move(parser)}});
 }
 
 ScalarLogReader::~ScalarLogReader() = default;

@@ -60,14 +60,9 @@ struct TruthRowParser {
 TruthRowParser truth_parser(LineReader& lines) {
   const std::string expected = "a CSV header with " + join(kTruthPosition) + " (and " +
                                join(kTruthVelocity) + ", " + join(kTruthAttitude) + ")";
-  CsvHeader header(first_line(lines, expected), lines.path());
-  if (const auto missing = header.missing(kTruthPosition); !missing.empty()) {
-    throw Error(lines.path() + ": missing columns " + join(missing) + "; expected " + expected);
-  }
-  header.use(kTruthPosition);
+  CsvHeader header = take_csv_header(lines, kTruthPosition, expected);
   header.use_group(kTruthVelocity);
   header.use_group(kTruthAttitude);
-  lines.next();  // the header
   return {header.parser()};
 }
 
@@ -101,14 +96,13 @@ TruthRecord mix(const TruthRecord& a, const TruthRecord& b, Time t) {
 }  // namespace
 
 struct TruthLogReader::Impl {
-  LogSource<TruthRow, TruthRowParser> source;
+  LogSource<TruthRow> source;
 };
 
 TruthLogReader::TruthLogReader(const std::filesystem::path& path) {
   LineReader lines(path);
   TruthRowParser parser = truth_parser(lines);
-  impl_ = std::make_unique<Impl>(
-      Impl{LogSource<TruthRow, TruthRowParser>(std::move(lines), std::move(parser))});
+  impl_ = std::make_unique<Impl>(Impl{{std::move(lines), std::move(parser)}});
 }
 
 TruthLogReader::~TruthLogReader() = default;

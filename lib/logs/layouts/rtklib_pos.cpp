@@ -1,5 +1,3 @@
-#include "lib/logs/rtklib_pos.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -12,8 +10,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "lib/logs/csv_header.hpp"
-#include "lib/logs/log_columns.hpp"
+#include "lib/logs/layouts/gnss_layouts.hpp"
 
 namespace leeway {
 namespace {
@@ -182,7 +179,28 @@ std::optional<LineDamage> parse_day_or_week(const char*& p, const char* end, Dur
   return std::nullopt;
 }
 
-}  // namespace
+/// Field names, time system and options are told by the lines that start with '%'.
+/// Source: RTKLIB ver. 2.4.2 Manual, appendix B.1.
+class RtklibParser {
+ public:
+  /// @throws Error on an e/n/u baseline, a geodetic height or a datum other than WGS-84, or a
+  /// column header without a position and its standard deviations.
+  void read_header(std::string_view line, const std::string& path);
+
+  bool has_columns() const { return has_columns_; }
+
+  std::optional<Fault> operator()(std::string_view line, GnssFix& fix) const;
+
+ private:
+  void read_columns(std::string_view line, const std::string& path);
+  std::optional<Fault> parse_epoch(std::string_view& line, Time& time) const;
+
+  LineParser fields_{};
+  Duration to_gps_{0};  // from the log's calendar
+  bool is_utc_{false};
+  bool is_ecef_{false};
+  bool has_columns_{false};
+};
 
 void RtklibParser::read_header(std::string_view line, const std::string& path) {
   if (contains(line, "baseline=") || contains(line, "e-baseline(")) {
@@ -213,10 +231,7 @@ void RtklibParser::read_columns(std::string_view line, const std::string& path) 
   }
   CsvHeader header(names, path);
   const std::span<const NamedColumn> position = is_ecef_ ? kEcefPosition : kGeodeticPosition;
-  if (const auto missing = header.missing(position); !missing.empty()) {
-    throw Error(path + ": missing columns " + join(missing) + " in its RTKLIB header");
-  }
-  header.use(position);
+  header.require(position, "an RTKLIB header with " + join(position));
   header.use(is_ecef_ ? std::span<const NamedColumn>(kEcefRest) : kGeodeticRest);
   if (is_dms) {
     header.use(std::array{NamedColumn{"latitude_min", {kMinutes, 0.0, 60.0}},
@@ -267,5 +282,24 @@ std::optional<Fault> RtklibParser::parse_epoch(std::string_view& line, Time& tim
   line.remove_prefix(static_cast<std::size_t>(p - line.data()));
   return std::nullopt;
 }
+
+bool is_rtklib(const LogHead& head) {
+  return !head.comments.empty() && head.comments.front().starts_with('%');
+}
+
+RowParser<GnssFix> rtklib_parser(const LogHead& head, LineReader& lines) {
+  RtklibParser parser;
+  for (const std::string& line : head.comments) parser.read_header(line, lines.path());
+  if (parser.has_columns()) return parser;
+  throw Error(lines.path() + ": no RTKLIB column header; set the RTKLIB option out-outhead to on");
+}
+
+}  // namespace
+
+const GnssLayout kRtklibPos{
+    .name = "RTKLIB .pos",
+    .expected = []() -> std::string { return "RTKLIB .pos with its header"; },
+    .sniff = is_rtklib,
+    .parser = rtklib_parser};
 
 }  // namespace leeway

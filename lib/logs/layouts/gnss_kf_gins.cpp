@@ -1,0 +1,36 @@
+#include <vector>
+
+#include "leeway/earth/error.hpp"
+#include "lib/logs/layouts/gnss_layouts.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr std::size_t kPositionFields = kPositionColumns.size();
+constexpr std::size_t kFixFields = kPositionFields + kVelocityColumns.size();
+
+RowParser<GnssFix> kf_gins_parser(const LogHead& head, LineReader& lines) {
+  const std::size_t fields = split_fields(head.line, Separator::kRuns).size();
+  if (fields != kPositionFields && fields != kFixFields) {
+    throw Error(lines.path() + ": " + std::to_string(fields) +
+                " fields in a line without a header; expected " + gnss_layouts());
+  }
+  std::vector<Column> columns;
+  for (const NamedColumn& named : kPositionColumns) columns.push_back(named.column);
+  if (fields == kFixFields) {
+    for (const NamedColumn& named : kVelocityColumns) columns.push_back(named.column);
+  }
+  return GnssFields{{Separator::kRuns, std::move(columns)}, WeekUnroller{}};
+}
+
+}  // namespace
+
+const GnssLayout kGnssKfGins{
+    .name = "KF-GINS text",
+    .expected = []() -> std::string {
+      return "KF-GINS text (7 or 13 numbers separated by blanks)";
+    },
+    .sniff = [](const LogHead& head) { return is_bare_numbers(head.line); },
+    .parser = kf_gins_parser};
+
+}  // namespace leeway

@@ -1,0 +1,29 @@
+#include "lib/logs/layouts/imu_layouts.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr std::array kColumns{kTimeColumn, angular(0), angular(1), angular(2),
+                              linear(0),   linear(1),  linear(2)};
+
+bool is_kf_gins(const LogHead& head) {
+  return is_bare_numbers(head.line) &&
+         split_fields(head.line, Separator::kRuns).size() >= kColumns.size();
+}
+
+RowParser<ImuRow> kf_gins_parser(const LogHead&, LineReader&) {
+  return ImuFields{.fields = {Separator::kRuns, {kColumns.begin(), kColumns.end()}},
+                   .week = WeekUnroller{}};
+}
+
+}  // namespace
+
+const ImuLayout kImuKfGins{
+    .name = "KF-GINS text",
+    .expected = []() -> std::string {
+      return "KF-GINS text: seconds of week and 6 increments, separated by blanks";
+    },
+    .sniff = is_kf_gins,
+    .parser = kf_gins_parser};
+
+}  // namespace leeway
