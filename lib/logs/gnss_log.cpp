@@ -35,35 +35,25 @@ void validate_scale(const char* field, double scale) {
               ": must be finite and > 0");
 }
 
-}  // namespace
-
-struct GnssLogReader::Impl {
-  std::string_view layout;
-  LogSource<GnssFix> source;
-};
-
-GnssLogReader::GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options) {
+std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
+                                                   const GnssLogOptions& options) {
   validate_scale("position_sigma_scale", options.position_sigma_scale);
   validate_scale("velocity_sigma_scale", options.velocity_sigma_scale);
-  LineReader lines(path);
   const LogHead head = read_head(lines);
-  const GnssLayout& layout = layout_of<GnssFix>(head, kGnssLayouts);
+  const GnssLayout& layout = layout_of(head, gnss_layouts());
   ScaledFix parser{layout.parser(head, lines), options};
-  impl_ = std::make_unique<Impl>(Impl{layout.name, {std::move(lines), std::move(parser)}});
+  return std::make_unique<LogSource<GnssFix>>(std::move(lines), std::move(parser), layout.name);
 }
 
-GnssLogReader::~GnssLogReader() = default;
-GnssLogReader::GnssLogReader(GnssLogReader&&) noexcept = default;
-GnssLogReader& GnssLogReader::operator=(GnssLogReader&&) noexcept = default;
+}  // namespace
 
-std::optional<GnssFix> GnssLogReader::next() {
-  std::optional<GnssFix> fix = impl_->source.next();
-  if (fix) ++impl_->source.report().records;
-  return fix;
+const std::vector<GnssLayout>& gnss_layouts() {
+  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos()};
+  return kLayouts;
 }
 
-std::string_view GnssLogReader::layout() const { return impl_->layout; }
-const LogSummary& GnssLogReader::report() const { return impl_->source.report(); }
+GnssLogReader::GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options)
+    : LogReader(gnss_source(LineReader(path), options)) {}
 
 GnssLogWriter::GnssLogWriter(const std::filesystem::path& path)
     : csv_(path,

@@ -18,61 +18,71 @@ bool is_proper_rotation(const Eigen::Matrix3d& C) {
   return (C * C.transpose()).isIdentity(kRotationTolerance) && C.determinant() > 0.0;
 }
 
-}  // namespace
+/// Rows as increments in body axes.
+class ImuSource final : public RecordSource<ImuIncrement> {
+ public:
+  ImuSource(LogSource<ImuRow> rows, const ImuLogOptions& options)
+      : rows_(std::move(rows)),
+        options_(options),
+        rotates_(options.C_bs != Eigen::Matrix3d::Identity()) {}
 
-struct ImuLogReader::Impl {
-  std::string_view layout;
-  ImuLogOptions options;
-  bool rotates;
-  LogSource<ImuRow> source;
-  std::optional<ImuRow> previous{};
+  std::optional<ImuIncrement> next() override {
+    std::optional<ImuRow> row = rows_.next();
+    const bool needs_previous = row && !(row->dt_s > 0.0);
+    if (needs_previous && !previous_) {
+      --rows_.report().records;  // it only starts the clock
+      previous_ = std::exchange(row, rows_.next());
+    }
+    if (!row) return std::nullopt;
+    ImuIncrement inc = increment(*row);
+    if (needs_previous) previous_ = row;
+    if (rotates_) {
+      inc.dtheta_b_rad = options_.C_bs * inc.dtheta_b_rad;
+      inc.dv_b_mps = options_.C_bs * inc.dv_b_mps;
+    }
+    return inc;
+  }
 
+  const LogSummary& report() const override { return std::as_const(rows_).report(); }
+  std::string_view layout() const override { return rows_.layout(); }
+
+ private:
   ImuIncrement increment(const ImuRow& row) const {
     if (row.is_rate) {
-      return increment_between({previous->time, previous->angular, previous->linear},
-                               {row.time, row.angular, row.linear}, options.meaning);
+      return increment_between({previous_->time, previous_->angular, previous_->linear},
+                               {row.time, row.angular, row.linear}, options_.meaning);
     }
-    const double dt_s = row.dt_s > 0.0 ? row.dt_s : to_seconds(row.time - previous->time);
+    const double dt_s = row.dt_s > 0.0 ? row.dt_s : to_seconds(row.time - previous_->time);
     return {row.time, dt_s, row.angular, row.linear};
   }
+
+  LogSource<ImuRow> rows_;
+  ImuLogOptions options_;
+  bool rotates_;
+  std::optional<ImuRow> previous_{};
 };
 
-ImuLogReader::ImuLogReader(const std::filesystem::path& path, const ImuLogOptions& options) {
+std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
+                                                       const ImuLogOptions& options) {
   if (!is_proper_rotation(options.C_bs)) {
     throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
   }
-  LineReader lines(path);
   const LogHead head = read_head(lines);
-  const ImuLayout& layout = layout_of<ImuRow>(head, kImuLayouts);
+  const ImuLayout& layout = layout_of(head, imu_layouts());
   RowParser<ImuRow> parser = layout.parser(head, lines);
-  impl_ = std::make_unique<Impl>(Impl{layout.name,
-                                      options,
-                                      options.C_bs != Eigen::Matrix3d::Identity(),
-                                      {std::move(lines), std::move(parser)}});
+  return std::make_unique<ImuSource>(
+      LogSource<ImuRow>(std::move(lines), std::move(parser), layout.name), options);
 }
 
-ImuLogReader::~ImuLogReader() = default;
-ImuLogReader::ImuLogReader(ImuLogReader&&) noexcept = default;
-ImuLogReader& ImuLogReader::operator=(ImuLogReader&&) noexcept = default;
+}  // namespace
 
-std::optional<ImuIncrement> ImuLogReader::next() {
-  Impl& log = *impl_;
-  std::optional<ImuRow> row = log.source.next();
-  const bool needs_previous = row && !(row->dt_s > 0.0);
-  if (needs_previous && !log.previous) log.previous = std::exchange(row, log.source.next());
-  if (!row) return std::nullopt;
-  ImuIncrement inc = log.increment(*row);
-  if (needs_previous) log.previous = row;
-  if (log.rotates) {
-    inc.dtheta_b_rad = log.options.C_bs * inc.dtheta_b_rad;
-    inc.dv_b_mps = log.options.C_bs * inc.dv_b_mps;
-  }
-  ++log.source.report().records;
-  return inc;
+const std::vector<ImuLayout>& imu_layouts() {
+  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins()};
+  return kLayouts;
 }
 
-std::string_view ImuLogReader::layout() const { return impl_->layout; }
-const LogSummary& ImuLogReader::report() const { return impl_->source.report(); }
+ImuLogReader::ImuLogReader(const std::filesystem::path& path, const ImuLogOptions& options)
+    : LogReader(imu_source(LineReader(path), options)) {}
 
 ImuLogWriter::ImuLogWriter(const std::filesystem::path& path)
     : csv_(path, {"t_s", "dt_s", "dtheta_x_rad", "dtheta_y_rad", "dtheta_z_rad", "dv_x_mps",

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,30 +31,26 @@ bool is_bare_numbers(std::string_view line);
 /// One layout of a kind of log: a row of the table of its reader.
 template <class Row>
 struct LogLayout {
-  std::string_view name{};    ///< for users: "KF-GINS text"
-  std::string (*expected)();  ///< what such a log has, for error messages
-  bool (*sniff)(const LogHead& head);
+  std::string_view name{};  ///< for users: "KF-GINS text"
+  std::string expected{};   ///< what such a log has, for error messages
+  bool (*sniff)(const LogHead& head){};
   /// Leaves the lines at the first row. @throws Error when the log lacks what the layout must have.
-  RowParser<Row> (*parser)(const LogHead& head, LineReader& lines);
+  RowParser<Row> (*parser)(const LogHead& head, LineReader& lines){};
 };
-
-template <class Row>
-using LogLayouts = std::span<const LogLayout<Row>* const>;
 
 /// The last layout of the table that recognizes the head: the first of them must take anything.
 template <class Row>
-const LogLayout<Row>& layout_of(const LogHead& head, LogLayouts<Row> layouts) {
-  return **std::find_if(layouts.rbegin(), layouts.rend(),
-                        [&](const LogLayout<Row>* layout) { return layout->sniff(head); });
+const LogLayout<Row>& layout_of(const LogHead& head, const std::vector<LogLayout<Row>>& layouts) {
+  return *std::find_if(layouts.rbegin(), layouts.rend(),
+                       [&](const LogLayout<Row>& layout) { return layout.sniff(head); });
 }
 
 /// "a, b, or c".
 template <class Row>
-std::string list_of(LogLayouts<Row> layouts) {
-  std::string list;
-  for (const LogLayout<Row>* layout : layouts) {
-    if (layout != layouts.front()) list += layout == layouts.back() ? ", or " : ", ";
-    list += layout->expected();
+std::string list_of(const std::vector<LogLayout<Row>>& layouts) {
+  std::string list = layouts.front().expected;
+  for (std::size_t k = 1; k < layouts.size(); ++k) {
+    list += (k + 1 == layouts.size() ? ", or " : ", ") + layouts[k].expected;
   }
   return list;
 }

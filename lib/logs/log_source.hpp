@@ -11,6 +11,7 @@
 
 #include "leeway/earth/time.hpp"
 #include "leeway/logs/line_reader.hpp"
+#include "leeway/logs/log_reader.hpp"
 #include "leeway/logs/log_summary.hpp"
 #include "lib/logs/text_fields.hpp"
 
@@ -32,23 +33,30 @@ class WeekUnroller {
   Duration offset_{};
 };
 
-/// Rows in the order of a log. A Row has a `Time time`.
 template <class Row>
-class LogSource {
- public:
-  LogSource(LineReader lines, RowParser<Row> parser)
-      : lines_(std::move(lines)), parser_(std::move(parser)) {}
+Time time_of(const Row& row) {
+  return row.time;
+}
 
-  /// The next row later than the one before.
-  std::optional<Row> next() {
+/// The rows of a log in strictly increasing time. Each counts as a record.
+template <class Row>
+class LogSource final : public RecordSource<Row> {
+ public:
+  LogSource(LineReader lines, RowParser<Row> parser, std::string_view layout = "CSV")
+      : lines_(std::move(lines)), parser_(std::move(parser)), layout_(layout) {}
+
+  std::optional<Row> next() override {
     std::optional<Row> row = held_ ? std::exchange(held_, std::nullopt) : read();
-    if (row && (!last_ || row->time - *last_ > kSuspectJump)) row = settle(std::move(*row));
-    if (row) last_ = row->time;
+    if (row && (!last_ || time_of(*row) - *last_ > kSuspectJump)) row = settle(std::move(*row));
+    if (!row) return row;
+    last_ = time_of(*row);
+    ++report_.records;
     return row;
   }
 
   LogSummary& report() { return report_; }
-  const LogSummary& report() const { return report_; }
+  const LogSummary& report() const override { return report_; }
+  std::string_view layout() const override { return layout_; }
 
  private:
   static constexpr Duration kSuspectJump = std::chrono::seconds{10};
@@ -63,8 +71,8 @@ class LogSource {
         reject(LineDamage::kTooLong);
       } else if (const auto fault = parser_(line_, row)) {
         report_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
-      } else if (last_ && row.time <= *last_) {
-        reject_order(row.time, *last_);
+      } else if (last_ && time_of(row) <= *last_) {
+        reject_order(time_of(row), *last_);
       } else {
         return row;
       }
@@ -79,18 +87,18 @@ class LogSource {
     for (;;) {
       std::string message = damage_message(lines_, line_, {LineDamage::kTimeJumpsAhead, line_});
       std::optional<Row> following = read();
-      while (following && following->time <= row.time &&
-             row.time - following->time <= kSuspectJump) {
-        reject_order(following->time, row.time);
+      while (following && time_of(*following) <= time_of(row) &&
+             time_of(row) - time_of(*following) <= kSuspectJump) {
+        reject_order(time_of(*following), time_of(row));
         following = read();
       }
-      if (!following || following->time > row.time) {
+      if (!following || time_of(*following) > time_of(row)) {
         held_ = std::move(following);
         return row;
       }
       report_.add_damage(LineDamage::kTimeJumpsAhead, std::move(message));
       row = std::move(*following);
-      if (last_ && row.time - *last_ <= kSuspectJump) return row;
+      if (last_ && time_of(row) - *last_ <= kSuspectJump) return row;
     }
   }
 
@@ -104,6 +112,7 @@ class LogSource {
 
   LineReader lines_;
   RowParser<Row> parser_;
+  std::string_view layout_;
   LogSummary report_{};
   std::string_view line_{};    // read last
   std::optional<Row> held_{};  // read ahead to settle() the row before it

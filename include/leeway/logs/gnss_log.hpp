@@ -3,12 +3,9 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string_view>
 
 #include "leeway/logs/csv_writer.hpp"
-#include "leeway/logs/log_summary.hpp"
+#include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 
 namespace leeway {
@@ -38,36 +35,22 @@ struct GnssLogOptions {
 /// A damaged line costs that line: unparsable, a number missing or not finite, a latitude beyond
 /// +-90 deg, a longitude beyond +-360 deg, a standard deviation not in (0, 1e5], a fix that is not
 /// usable (is_usable), a time that goes back, repeats or jumps ahead of the lines after it.
-class GnssLogReader {
+class GnssLogReader : public LogReader<GnssFix> {
  public:
   /// @throws Error when the file cannot be read, is empty, lacks columns (naming them), holds
   /// something else than ellipsoidal WGS-84 positions (naming the RTKLIB option to change), or a
   /// scale is not a positive number.
   explicit GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options = {});
-  ~GnssLogReader();
-  GnssLogReader(GnssLogReader&&) noexcept;
-  GnssLogReader& operator=(GnssLogReader&&) noexcept;
-
-  /// The next usable fix, later than the one before; nothing at the end.
-  std::optional<GnssFix> next();
-
-  /// The name of the layout, as above.
-  std::string_view layout() const;
-  const LogSummary& report() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
-/// Writes the CSV layout with velocity columns: exact numbers of the geodetic position, of the NED
-/// velocity and of the standard deviations; the layout has no correlations. Errors and the partial
-/// file are those of CsvWriter.
+/// Writer of the CSV layout with velocity columns. Geodetic position, NED velocity and standard
+/// deviations are exact; the layout has no correlations. Errors and the partial file are those of
+/// CsvWriter.
 class GnssLogWriter {
  public:
   explicit GnssLogWriter(const std::filesystem::path& path);
 
-  /// A fix without velocity has NaN there. @throws Error when the fix has no position.
+  /// Row of a fix; NaN where it has no velocity. @throws Error when it has no position.
   void write(const GnssFix& fix);
   void close() { csv_.close(); }
 

@@ -4,12 +4,9 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string_view>
 
 #include "leeway/logs/csv_writer.hpp"
-#include "leeway/logs/log_summary.hpp"
+#include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/imu.hpp"
 
 namespace leeway {
@@ -32,30 +29,18 @@ struct ImuLogOptions {
 /// beyond 1e3 rad/s (or rad), a specific force beyond 1e5 m/s^2 (or m/s), a time that goes back,
 /// repeats or jumps ahead of the lines after it. Repeated values under new times are passed on as
 /// they are.
-class ImuLogReader {
+///
+/// Increments are in body axes. In layouts without dt_s it is the time from the line before, and
+/// the first line only starts the clock. Over a gap of rates the increment is a fiction: judge it
+/// by its dt_s.
+class ImuLogReader : public LogReader<ImuIncrement> {
  public:
   /// @throws Error when the file cannot be read, is empty, lacks columns (naming them), or C_bs is
   /// not a proper rotation to 1e-6.
   explicit ImuLogReader(const std::filesystem::path& path, const ImuLogOptions& options = {});
-  ~ImuLogReader();
-  ImuLogReader(ImuLogReader&&) noexcept;
-  ImuLogReader& operator=(ImuLogReader&&) noexcept;
-
-  /// The next increment, in body axes, its time later than the one before; nothing at the end. In
-  /// layouts without dt_s it is the time from the line before and the first line only starts the
-  /// clock. Over a gap of rates the increment is a fiction: judge it by its dt_s.
-  std::optional<ImuIncrement> next();
-
-  /// The name of the layout, as above.
-  std::string_view layout() const;
-  const LogSummary& report() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
-/// Writes the layout of increments: every number reads back bit for bit. Errors and the partial
+/// Writer of the layout of increments: every number reads back bit for bit. Errors and the partial
 /// file are those of CsvWriter.
 class ImuLogWriter {
  public:

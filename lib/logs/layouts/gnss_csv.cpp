@@ -8,7 +8,7 @@ namespace leeway {
 namespace {
 
 RowParser<GnssFix> csv_parser(const LogHead&, LineReader& lines) {
-  CsvHeader header = take_csv_header(lines, kPositionColumns, gnss_layouts());
+  CsvHeader header = take_csv_header(lines, kPositionColumns, list_of(gnss_layouts()));
   header.use_group(kVelocityColumns);
   return GnssFields{header.parser()};
 }
@@ -34,13 +34,10 @@ std::optional<Fault> GnssFields::operator()(std::string_view line, GnssFix& fix)
   return std::nullopt;
 }
 
-const GnssLayout kGnssCsv{.name = "CSV",
-                          .expected =
-                              [] {
-                                return "a CSV header with " + join(kPositionColumns) + " (and " +
-                                       join(kVelocityColumns) + ")";
-                              },
-                          .sniff = [](const LogHead&) { return true; },
-                          .parser = csv_parser};
+GnssLayout gnss_csv() {
+  return {"CSV",
+          "a CSV header with " + join(kPositionColumns) + " (and " + join(kVelocityColumns) + ")",
+          [](const LogHead&) { return true; }, csv_parser};
+}
 
 }  // namespace leeway

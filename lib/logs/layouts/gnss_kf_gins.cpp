@@ -13,7 +13,7 @@ RowParser<GnssFix> kf_gins_parser(const LogHead& head, LineReader& lines) {
   const std::size_t fields = split_fields(head.line, Separator::kRuns).size();
   if (fields != kPositionFields && fields != kFixFields) {
     throw Error(lines.path() + ": " + std::to_string(fields) +
-                " fields in a line without a header; expected " + gnss_layouts());
+                " fields in a line without a header; expected " + list_of(gnss_layouts()));
   }
   std::vector<Column> columns;
   for (const NamedColumn& named : kPositionColumns) columns.push_back(named.column);
@@ -25,12 +25,9 @@ RowParser<GnssFix> kf_gins_parser(const LogHead& head, LineReader& lines) {
 
 }  // namespace
 
-const GnssLayout kGnssKfGins{
-    .name = "KF-GINS text",
-    .expected = []() -> std::string {
-      return "KF-GINS text (7 or 13 numbers separated by blanks)";
-    },
-    .sniff = [](const LogHead& head) { return is_bare_numbers(head.line); },
-    .parser = kf_gins_parser};
+GnssLayout gnss_kf_gins() {
+  return {"KF-GINS text", "KF-GINS text (7 or 13 numbers separated by blanks)",
+          [](const LogHead& head) { return is_bare_numbers(head.line); }, kf_gins_parser};
+}
 
 }  // namespace leeway

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
+#include <vector>
 
 #include "leeway/sensors/gnss_fix.hpp"
 #include "lib/logs/csv_header.hpp"
@@ -18,13 +18,12 @@ namespace leeway {
 
 using GnssLayout = LogLayout<GnssFix>;
 
-extern const GnssLayout kGnssCsv;
-extern const GnssLayout kGnssKfGins;
-extern const GnssLayout kRtklibPos;
+GnssLayout gnss_csv();
+GnssLayout gnss_kf_gins();
+GnssLayout rtklib_pos();
 
-inline constexpr std::array kGnssLayouts{&kGnssCsv, &kGnssKfGins, &kRtklibPos};
-
-inline std::string gnss_layouts() { return list_of<GnssFix>(kGnssLayouts); }
+/// The table of the layouts (gnss_log.cpp).
+const std::vector<GnssLayout>& gnss_layouts();
 
 // Columns, and the slots that GnssFields reads. KF-GINS text has them in this order.
 inline constexpr std::array kPositionColumns{

@@ -20,26 +20,26 @@ RowParser<ImuRow> rates_parser(const LogHead& head, LineReader& lines) {
   const CsvHeader header(head.line, lines.path());
   const bool is_rates = header.missing(kRates).size() <= header.missing(kIncrements).size();
   const std::span<const NamedColumn> increments = kIncrements;
-  return ImuFields{take_csv_header(lines, is_rates ? kRates : increments, imu_layouts()).parser(),
-                   true};
+  return ImuFields{
+      take_csv_header(lines, is_rates ? kRates : increments, list_of(imu_layouts())).parser(),
+      true};
 }
 
 RowParser<ImuRow> increments_parser(const LogHead&, LineReader& lines) {
-  return ImuFields{take_csv_header(lines, kIncrements, imu_layouts()).parser()};
+  return ImuFields{take_csv_header(lines, kIncrements, list_of(imu_layouts())).parser()};
 }
 
 }  // namespace
 
-const ImuLayout kImuCsvRates{
-    .name = "CSV, rates",
-    .expected = [] { return "a CSV header with " + join(kRates) + " (rates)"; },
-    .sniff = [](const LogHead&) { return true; },
-    .parser = rates_parser};
+ImuLayout imu_csv_rates() {
+  return {"CSV, rates", "a CSV header with " + join(kRates) + " (rates)",
+          [](const LogHead&) { return true; }, rates_parser};
+}
 
-const ImuLayout kImuCsvIncrements{
-    .name = "CSV, increments",
-    .expected = [] { return "one with " + join(kIncrements) + " (increments)"; },
-    .sniff = [](const LogHead& head) { return CsvHeader(head.line, "").has(kIncrements); },
-    .parser = increments_parser};
+ImuLayout imu_csv_increments() {
+  return {"CSV, increments", "one with " + join(kIncrements) + " (increments)",
+          [](const LogHead& head) { return CsvHeader(head.line, "").has(kIncrements); },
+          increments_parser};
+}
 
 }  // namespace leeway

@@ -18,12 +18,9 @@ RowParser<ImuRow> kf_gins_parser(const LogHead&, LineReader&) {
 
 }  // namespace
 
-const ImuLayout kImuKfGins{
-    .name = "KF-GINS text",
-    .expected = []() -> std::string {
-      return "KF-GINS text: seconds of week and 6 increments, separated by blanks";
-    },
-    .sniff = is_kf_gins,
-    .parser = kf_gins_parser};
+ImuLayout imu_kf_gins() {
+  return {"KF-GINS text", "KF-GINS text: seconds of week and 6 increments, separated by blanks",
+          is_kf_gins, kf_gins_parser};
+}
 
 }  // namespace leeway

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <string>
 #include <string_view>
+#include <vector>
 
 #include "lib/logs/log_columns.hpp"
 #include "lib/logs/log_layout.hpp"
@@ -25,13 +25,12 @@ struct ImuRow {
 
 using ImuLayout = LogLayout<ImuRow>;
 
-extern const ImuLayout kImuCsvRates;
-extern const ImuLayout kImuCsvIncrements;
-extern const ImuLayout kImuKfGins;
+ImuLayout imu_csv_rates();
+ImuLayout imu_csv_increments();
+ImuLayout imu_kf_gins();
 
-inline constexpr std::array kImuLayouts{&kImuCsvRates, &kImuCsvIncrements, &kImuKfGins};
-
-inline std::string imu_layouts() { return list_of<ImuRow>(kImuLayouts); }
+/// The table of the layouts (imu_log.cpp).
+const std::vector<ImuLayout>& imu_layouts();
 
 // Columns, and the slots that ImuFields reads.
 constexpr Column angular(int axis) { return {axis, -1e3, 1e3}; }

@@ -34,48 +34,32 @@ enum Slot {
   kRtklibSlots = 22
 };
 
+/// Columns by their slots, and the limits of the coordinates.
+struct Frame {
+  std::array<std::string_view, kMinutes> names;
+  std::array<double, 3> limits;
+};
+constexpr Frame kGeodetic{
+    {"latitude", "longitude", "height", "sdn", "sde", "sdu", "sdne", "sdeu", "sdun", "vn", "ve",
+     "vu", "sdvn", "sdve", "sdvu", "sdvne", "sdveu", "sdvun"},
+    {90.0, 360.0, kMaxHeightM}};
+constexpr Frame kEcef{{"x-ecef", "y-ecef", "z-ecef", "sdx", "sdy", "sdz", "sdxy", "sdyz", "sdzx",
+                       "vx", "vy", "vz", "sdvx", "sdvy", "sdvz", "sdvxy", "sdvyz", "sdvzx"},
+                      {1e7, 1e7, 1e7}};
+
 constexpr Column optional(int slot) { return {slot, -kMaxSigma, kMaxSigma, true}; }
-constexpr Column coordinate(int slot, double limit) { return {slot, -limit, limit}; }
 
-constexpr std::array kGeodeticPosition{NamedColumn{"latitude", coordinate(kPosition, 90.0)},
-                                       NamedColumn{"longitude", coordinate(kPosition + 1, 360.0)},
-                                       NamedColumn{"height", coordinate(kPosition + 2, 1e5)},
-                                       NamedColumn{"sdn", sigma_column(kSigma)},
-                                       NamedColumn{"sde", sigma_column(kSigma + 1)},
-                                       NamedColumn{"sdu", sigma_column(kSigma + 2)}};
-constexpr std::array kEcefPosition{NamedColumn{"x-ecef", coordinate(kPosition, 1e7)},
-                                   NamedColumn{"y-ecef", coordinate(kPosition + 1, 1e7)},
-                                   NamedColumn{"z-ecef", coordinate(kPosition + 2, 1e7)},
-                                   NamedColumn{"sdx", sigma_column(kSigma)},
-                                   NamedColumn{"sdy", sigma_column(kSigma + 1)},
-                                   NamedColumn{"sdz", sigma_column(kSigma + 2)}};
-
-// RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
-constexpr std::array kGeodeticRest{NamedColumn{"sdne", optional(kCovariance)},
-                                   NamedColumn{"sdeu", optional(kCovariance + 1)},
-                                   NamedColumn{"sdun", optional(kCovariance + 2)},
-                                   NamedColumn{"sdue", optional(kCovariance + 2)},
-                                   NamedColumn{"vn", optional(kVelocity)},
-                                   NamedColumn{"ve", optional(kVelocity + 1)},
-                                   NamedColumn{"vu", optional(kVelocity + 2)},
-                                   NamedColumn{"sdvn", optional(kVelocitySigma)},
-                                   NamedColumn{"sdve", optional(kVelocitySigma + 1)},
-                                   NamedColumn{"sdvu", optional(kVelocitySigma + 2)},
-                                   NamedColumn{"sdvne", optional(kVelocityCovariance)},
-                                   NamedColumn{"sdveu", optional(kVelocityCovariance + 1)},
-                                   NamedColumn{"sdvun", optional(kVelocityCovariance + 2)}};
-constexpr std::array kEcefRest{NamedColumn{"sdxy", optional(kCovariance)},
-                               NamedColumn{"sdyz", optional(kCovariance + 1)},
-                               NamedColumn{"sdzx", optional(kCovariance + 2)},
-                               NamedColumn{"vx", optional(kVelocity)},
-                               NamedColumn{"vy", optional(kVelocity + 1)},
-                               NamedColumn{"vz", optional(kVelocity + 2)},
-                               NamedColumn{"sdvx", optional(kVelocitySigma)},
-                               NamedColumn{"sdvy", optional(kVelocitySigma + 1)},
-                               NamedColumn{"sdvz", optional(kVelocitySigma + 2)},
-                               NamedColumn{"sdvxy", optional(kVelocityCovariance)},
-                               NamedColumn{"sdvyz", optional(kVelocityCovariance + 1)},
-                               NamedColumn{"sdvzx", optional(kVelocityCovariance + 2)}};
+/// The columns of the slots from the first to before the last.
+std::vector<NamedColumn> columns(const Frame& frame, int first, int last) {
+  std::vector<NamedColumn> columns;
+  for (int slot = first; slot < last; ++slot) {
+    const auto at = static_cast<std::size_t>(slot);
+    Column column = slot < kCovariance ? sigma_column(slot) : optional(slot);
+    if (slot < kSigma) column = {slot, -frame.limits[at], frame.limits[at]};
+    columns.push_back({frame.names[at], column});
+  }
+  return columns;
+}
 
 bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
@@ -230,9 +214,12 @@ void RtklibParser::read_columns(std::string_view line, const std::string& path) 
     if (is_dms && name.ends_with("itude")) names += name + "_min," + name + "_s,";
   }
   CsvHeader header(names, path);
-  const std::span<const NamedColumn> position = is_ecef_ ? kEcefPosition : kGeodeticPosition;
-  header.require(position, "an RTKLIB header with " + join(position));
-  header.use(is_ecef_ ? std::span<const NamedColumn>(kEcefRest) : kGeodeticRest);
+  const Frame& frame = is_ecef_ ? kEcef : kGeodetic;
+  const auto needed = columns(frame, kPosition, kCovariance);
+  header.require(needed, "an RTKLIB header with " + join(needed));
+  header.use(columns(frame, kCovariance, kMinutes));
+  // RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
+  header.use(std::array{NamedColumn{"sdue", optional(kCovariance + 2)}});
   if (is_dms) {
     header.use(std::array{NamedColumn{"latitude_min", {kMinutes, 0.0, 60.0}},
                           NamedColumn{"latitude_s", {kSeconds, 0.0, 60.0}},
@@ -296,10 +283,8 @@ RowParser<GnssFix> rtklib_parser(const LogHead& head, LineReader& lines) {
 
 }  // namespace
 
-const GnssLayout kRtklibPos{
-    .name = "RTKLIB .pos",
-    .expected = []() -> std::string { return "RTKLIB .pos with its header"; },
-    .sniff = is_rtklib,
-    .parser = rtklib_parser};
+GnssLayout rtklib_pos() {
+  return {"RTKLIB .pos", "RTKLIB .pos with its header", is_rtklib, rtklib_parser};
+}
 
 }  // namespace leeway
