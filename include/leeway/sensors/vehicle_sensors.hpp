@@ -20,7 +20,8 @@ struct BarometricHeight {
   double sigma_m{0.5};  ///< beyond the slow change of the weather
 };
 
-/// Finite, the sigma at least kLeastSigma (gnss_fix.hpp), the value one that a vehicle can have.
+/// Whether a reading can be used: finite, the sigma at least kLeastSigma (gnss_fix.hpp), the value
+/// one that a vehicle can have.
 bool is_usable(const OdometerSpeed& odometer);
 bool is_usable(const BarometricHeight& barometer);
 
