@@ -7,7 +7,7 @@
 namespace leeway {
 namespace {
 
-RowParser<GnssFix> csv_parser(const LogHead&, LineReader& lines) {
+RowParser<GnssFix> fix_csv_parser(const LogHead&, LineReader& lines) {
   CsvHeader header = take_csv_header(lines, kPositionColumns, list_of(gnss_layouts()));
   header.use_group(kVelocityColumns);
   return GnssFields{header.parser()};
@@ -37,7 +37,7 @@ std::optional<Fault> GnssFields::operator()(std::string_view line, GnssFix& fix)
 GnssLayout gnss_csv() {
   return {"CSV",
           "a CSV header with " + join(kPositionColumns) + " (and " + join(kVelocityColumns) + ")",
-          [](const LogHead&) { return true; }, csv_parser};
+          [](const LogHead&) { return true; }, fix_csv_parser};
 }
 
 }  // namespace leeway

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kPositionFields = kPositionColumns.size();
 constexpr std::size_t kFixFields = kPositionFields + kVelocityColumns.size();
 
-RowParser<GnssFix> kf_gins_parser(const LogHead& head, LineReader& lines) {
+RowParser<GnssFix> kf_gins_fix_parser(const LogHead& head, LineReader& lines) {
   const std::size_t fields = split_fields(head.line, Separator::kRuns).size();
   if (fields != kPositionFields && fields != kFixFields) {
     throw Error(lines.path() + ": " + std::to_string(fields) +
@@ -27,7 +27,7 @@ RowParser<GnssFix> kf_gins_parser(const LogHead& head, LineReader& lines) {
 
 GnssLayout gnss_kf_gins() {
   return {"KF-GINS text", "KF-GINS text (7 or 13 numbers separated by blanks)",
-          [](const LogHead& head) { return is_bare_numbers(head.line); }, kf_gins_parser};
+          [](const LogHead& head) { return is_bare_numbers(head.line); }, kf_gins_fix_parser};
 }
 
 }  // namespace leeway

@@ -3,16 +3,16 @@
 namespace leeway {
 namespace {
 
-constexpr std::array kColumns{kTimeColumn, angular(0), angular(1), angular(2),
-                              linear(0),   linear(1),  linear(2)};
+constexpr std::array kKfGinsColumns{kTimeColumn, angular(0), angular(1), angular(2),
+                                    linear(0),   linear(1),  linear(2)};
 
-bool is_kf_gins(const LogHead& head) {
+bool is_kf_gins_imu(const LogHead& head) {
   return is_bare_numbers(head.line) &&
-         split_fields(head.line, Separator::kRuns).size() >= kColumns.size();
+         split_fields(head.line, Separator::kRuns).size() >= kKfGinsColumns.size();
 }
 
-RowParser<ImuRow> kf_gins_parser(const LogHead&, LineReader&) {
-  return ImuFields{.fields = {Separator::kRuns, {kColumns.begin(), kColumns.end()}},
+RowParser<ImuRow> kf_gins_imu_parser(const LogHead&, LineReader&) {
+  return ImuFields{.fields = {Separator::kRuns, {kKfGinsColumns.begin(), kKfGinsColumns.end()}},
                    .week = WeekUnroller{}};
 }
 
@@ -20,7 +20,7 @@ RowParser<ImuRow> kf_gins_parser(const LogHead&, LineReader&) {
 
 ImuLayout imu_kf_gins() {
   return {"KF-GINS text", "KF-GINS text: seconds of week and 6 increments, separated by blanks",
-          is_kf_gins, kf_gins_parser};
+          is_kf_gins_imu, kf_gins_imu_parser};
 }
 
 }  // namespace leeway

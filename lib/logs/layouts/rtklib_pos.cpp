@@ -50,7 +50,7 @@ constexpr Frame kEcef{{"x-ecef", "y-ecef", "z-ecef", "sdx", "sdy", "sdz", "sdxy"
 constexpr Column optional(int slot) { return {slot, -kMaxSigma, kMaxSigma, true}; }
 
 /// The columns of the slots from the first to before the last.
-std::vector<NamedColumn> columns(const Frame& frame, int first, int last) {
+std::vector<NamedColumn> columns_of(const Frame& frame, int first, int last) {
   std::vector<NamedColumn> columns;
   for (int slot = first; slot < last; ++slot) {
     const auto at = static_cast<std::size_t>(slot);
@@ -215,9 +215,9 @@ void RtklibParser::read_columns(std::string_view line, const std::string& path) 
   }
   CsvHeader header(names, path);
   const Frame& frame = is_ecef_ ? kEcef : kGeodetic;
-  const auto needed = columns(frame, kPosition, kCovariance);
+  const auto needed = columns_of(frame, kPosition, kCovariance);
   header.require(needed, "an RTKLIB header with " + join(needed));
-  header.use(columns(frame, kCovariance, kMinutes));
+  header.use(columns_of(frame, kCovariance, kMinutes));
   // RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
   header.use(std::array{NamedColumn{"sdue", optional(kCovariance + 2)}});
   if (is_dms) {
