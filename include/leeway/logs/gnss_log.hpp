@@ -32,14 +32,15 @@ struct GnssLogOptions {
 ///   with zeros for them, are not used. Where the printed correlations are rounded beyond a
 ///   positive definite matrix, only its diagonal is used.
 ///
-/// A damaged line costs that line: unparsable, a number missing or not finite, a latitude beyond
-/// +-90 deg, a longitude beyond +-360 deg, a standard deviation not in (0, 1e5], a fix that is not
-/// usable (is_usable), a time that goes back, repeats or jumps ahead of the lines after it.
+/// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
+/// a latitude beyond +-90 deg or a longitude beyond +-360 deg. So does a standard deviation not in
+/// (0, 1e5] and a fix that is not usable (is_usable). So does a time that goes back, repeats or
+/// jumps ahead of the lines after it.
 class GnssLogReader : public LogReader<GnssFix> {
  public:
-  /// @throws Error when the file cannot be read, is empty, lacks columns (naming them), holds
-  /// something else than ellipsoidal WGS-84 positions (naming the RTKLIB option to change), or a
-  /// scale is not a positive number.
+  /// @throws Error when the file cannot be read, is empty or lacks columns (naming them), or a
+  /// scale is not a positive number. Also when positions are not ellipsoidal WGS-84, naming the
+  /// RTKLIB option to change.
   explicit GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options = {});
 };
 

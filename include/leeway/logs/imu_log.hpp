@@ -25,10 +25,10 @@ struct ImuLogOptions {
 /// - "KF-GINS text": no header, blanks between: seconds of week, which count on past the end of the
 ///   week, dtheta xyz (rad), dv xyz (m/s).
 ///
-/// A damaged line costs that line: unparsable, a number missing or not finite, an angular rate
-/// beyond 1e3 rad/s (or rad), a specific force beyond 1e5 m/s^2 (or m/s), a time that goes back,
-/// repeats or jumps ahead of the lines after it. Repeated values under new times are passed on as
-/// they are.
+/// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
+/// an angular rate beyond 1e3 rad/s (or rad) or a specific force beyond 1e5 m/s^2 (or m/s). So does
+/// a time that goes back, repeats or jumps ahead of the lines after it. Repeated values under new
+/// times are passed on as they are.
 ///
 /// Increments are in body axes. In layouts without dt_s it is the time from the line before, and
 /// the first line only starts the clock. Over a gap of rates the increment is a fiction: judge it
