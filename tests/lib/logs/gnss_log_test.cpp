@@ -167,7 +167,7 @@ TEST_CASE("files without usable content and wrong options are refused") {
   CHECK(contains(message("% (lat/lon/height=WGS84/geodetic,Q=1:fix)\n"),
                  "set the RTKLIB option out-height to ellipsoidal"));
   CHECK(contains(message("%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m)\n"),
-                 "missing columns sde, sdu in its RTKLIB header"));
+                 "missing columns sde, sdu; expected an RTKLIB header with latitude"));
   CHECK(contains(message(kHeader, {.position_sigma_scale = 0.0}), "position_sigma_scale"));
   CHECK(contains(message(kHeader, {.velocity_sigma_scale = std::nan("")}), "velocity_sigma_scale"));
   CHECK_THROWS_AS(GnssLogReader{dir / "absent"}, Error);
