@@ -19,9 +19,9 @@ void require_known(const std::string& key) {
   throw Error("atlas: no scene '" + key + "': " + did_you_mean(key, known));
 }
 
-std::vector<AtlasScene> all_scenes() {
-  std::vector<AtlasScene> scenes = estimator_scenes();
-  for (AtlasScene& scene : mechanization_scenes()) scenes.push_back(std::move(scene));
+std::vector<AtlasScene> in_order(std::vector<AtlasScene> scenes) {
+  std::sort(scenes.begin(), scenes.end(),
+            [](const AtlasScene& a, const AtlasScene& b) { return a.place < b.place; });
   return scenes;
 }
 
@@ -51,7 +51,7 @@ bool fails_silently(const AtlasLimits& limits, const AtlasCell& cell) {
 }
 
 const std::vector<AtlasScene>& atlas_scenes() {
-  static const std::vector<AtlasScene> kScenes = all_scenes();
+  static const std::vector<AtlasScene> kScenes = in_order(scenes::all());
   return kScenes;
 }
 

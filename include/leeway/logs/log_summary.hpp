@@ -11,7 +11,7 @@
 
 namespace leeway {
 
-/// Why a line was not used.
+/// Reasons for which a line is not used.
 enum class LineDamage {
   kNotANumber,
   kMissingField,
@@ -24,9 +24,11 @@ enum class LineDamage {
 };
 inline constexpr std::size_t kLineDamageCount = 8;
 
+/// Words of a reason, for messages: "not a number".
 std::string_view name(LineDamage reason);
 
-/// A damaged line costs that line, not the log.
+/// Counts of a log's lines and records, and its damaged lines by reason. A damaged line costs that
+/// line, not the log.
 struct LogSummary {
   static constexpr std::size_t kMaxMessages = 10;
 

@@ -1,8 +1,8 @@
 /// @file
 /// The IMU error model, [seed (1)-(2)] complete and extended: constant bias, scale factors and
-/// misalignments, g-sensitivity, white noise; first-order Gauss-Markov in-run bias, quantization
-/// and saturation as options. A model is plain data; sim/imu_simulator.hpp applies it to true data
-/// and the filters derive their process noise from it.
+/// misalignments, g-sensitivity, white noise. First-order Gauss-Markov in-run bias, quantization
+/// and saturation are options. A model is plain data: leeway/sim/sensors/imu_simulator.hpp applies
+/// it to true data, and the filters derive their process noise from it.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +10,15 @@
 
 namespace leeway {
 
-/// First-order Gauss-Markov process: stationary sigma, correlation time. sigma = 0 switches it off;
-/// an infinite time makes it a random constant.
+/// First-order Gauss-Markov process: stationary sigma and correlation time. A sigma of 0 switches
+/// it off; an infinite time makes it a random constant.
 struct GaussMarkov {
   double sigma{0.0};
   double tau_s{std::numeric_limits<double>::infinity()};
 };
 
-/// Exact discretization of a Gauss-Markov process b over a step, together with its integral: the
-/// integral is what an increment carries. With s = tau (1 - phi):
+/// Exact discretization of a Gauss-Markov process b over a step, and of its integral, which is what
+/// an increment carries. With s = tau (1 - phi):
 ///   b'      = phi b + w1,   integral b = s b + w2.
 struct GaussMarkovStep {
   double phi{1.0};            ///< exp(-dt / tau)
@@ -28,7 +28,8 @@ struct GaussMarkovStep {
   double sigma_integral{};    ///< standard deviation of w2 that w1 does not explain, unit * s
 };
 
-/// Source: the covariance of (w1, w2) integrated in closed form, by series where dt << tau.
+/// Discretization over dt_s (s): the covariance of (w1, w2) integrated in closed form, by series
+/// where dt << tau.
 /// @throws Error unless dt_s > 0, sigma >= 0 and tau_s > 0.
 GaussMarkovStep discretize(const GaussMarkov& process, double dt_s);
 
@@ -45,6 +46,7 @@ struct TriadErrorModel {
   double range{std::numeric_limits<double>::infinity()};  ///< saturation, +-u
 };
 
+/// Both triads of an IMU, and what the gyro feels of the specific force.
 struct ImuErrorModel {
   TriadErrorModel accelerometer{};                              ///< [seed (1)], m/s^2
   TriadErrorModel gyro{};                                       ///< [seed (2)], rad/s

@@ -10,30 +10,6 @@
 namespace leeway::cli {
 namespace {
 
-const char* format_name(ImuLogFormat format) {
-  switch (format) {
-    case ImuLogFormat::kCsvRates:
-      return "CSV, rates";
-    case ImuLogFormat::kCsvIncrements:
-      return "CSV, increments";
-    case ImuLogFormat::kKfGins:
-      break;
-  }
-  return "KF-GINS text";
-}
-
-const char* format_name(GnssLogFormat format) {
-  switch (format) {
-    case GnssLogFormat::kCsv:
-      return "CSV";
-    case GnssLogFormat::kKfGins:
-      return "KF-GINS text";
-    case GnssLogFormat::kRtklib:
-      break;
-  }
-  return "RTKLIB .pos";
-}
-
 std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
@@ -59,10 +35,10 @@ void inspect(FuseJob& job) {
   const sim::ReplayInput& in = job.input;
   job.imu_format = job.gnss_format = "stream";
   if (can_be_read_twice(in.imu)) {
-    job.imu_format = format_name(ImuLogReader(in.imu, in.imu_options).format());
+    job.imu_format = ImuLogReader(in.imu, in.imu_options).layout();
   }
   if (can_be_read_twice(in.gnss)) {
-    job.gnss_format = format_name(GnssLogReader(in.gnss, in.gnss_options).format());
+    job.gnss_format = GnssLogReader(in.gnss, in.gnss_options).layout();
   }
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
     if (in.aidings[a].empty() || !can_be_read_twice(in.aidings[a])) continue;

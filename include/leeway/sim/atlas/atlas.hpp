@@ -51,6 +51,7 @@ struct AtlasOptions {
 };
 
 struct AtlasScene {
+  int place{};           ///< scenes and their pages are in the order of this number
   std::string key{};     ///< "parked-rtk": of the command line, and the page docs/atlas/KEY.md
   std::string title{};   ///< "Parked with RTK fixes"
   std::string figure{};  ///< what the figure is: "horizontal error over the claimed sigma"
@@ -65,7 +66,7 @@ AtlasVerdict verdict_of(const AtlasLimits& limits, double figure);
 /// A variant that the library offers fails, and no detector says so.
 bool fails_silently(const AtlasLimits& limits, const AtlasCell& cell);
 
-/// All scenes, by the order of the pages.
+/// All scenes, in the order of their places.
 const std::vector<AtlasScene>& atlas_scenes();
 
 /// The scenes of these keys, in the order of atlas_scenes(); all for none.
