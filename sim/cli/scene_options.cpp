@@ -47,12 +47,12 @@ sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, const std::string& bi
 }
 
 sim::Scene changed_scene(const SceneChoice& choice) {
-  sim::Scene scene = sim::read_scene(choice.file, choice.at_s);
+  sim::Scene scene = scene_from_file(choice.file, choice.at_s);
   if (!choice.metric.empty()) {
-    scene.budget.metric = horizontal_metric_from_name(choice.metric);
+    scene.limit.metric = horizontal_metric_from_name(choice.metric);
   }
   if (!choice.filter.empty()) sim::read_filter_file(choice.filter, scene);
-  if (!choice.limits_m.empty()) scene.budget.limit_m = choice.limits_m.front();
+  if (!choice.limits_m.empty()) scene.limit.limit_m = choice.limits_m.front();
   if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
   return scene;
 }
@@ -76,6 +76,13 @@ Json gnss_json(const sim::GnssScenario& gnss) {
 }
 
 }  // namespace
+
+sim::Scene scene_from_file(const std::filesystem::path& file, std::optional<double> duration_s) {
+  std::vector<std::string> notes;
+  sim::Scene scene = sim::read_scene(file, duration_s, &notes);
+  for (const std::string& text : notes) fmt::print(stderr, "leeway: note: {}\n", text);
+  return scene;
+}
 
 void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)")
@@ -141,9 +148,9 @@ Json scene_json(const sim::Scene& scene) {
           {"bias_model", name(sim::bias_model_of(scene.imu))},
           {"gnss", gnss_json(scene.gnss)},
           {"gate_probability", scene.filter.gate_probability},
-          {"metric", name(scene.budget.metric)},
-          {"limit_m", scene.budget.limit_m},
-          {"last_s", scene.budget.last_s},
+          {"metric", name(scene.limit.metric)},
+          {"limit_m", scene.limit.limit_m},
+          {"last_s", scene.limit.last_s},
           {"trials", scene.trials},
           {"first_seed", scene.first_seed}};
 }

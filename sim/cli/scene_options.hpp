@@ -25,6 +25,10 @@ struct SceneChoice {
   std::optional<double> interval_s{};
 };
 
+/// As sim::read_scene, with a note on stderr for each old name that the file uses.
+sim::Scene scene_from_file(const std::filesystem::path& file,
+                           std::optional<double> duration_s = {});
+
 /// --scene, required, and the options that change it.
 void add_scene_options(CLI::App& app, SceneChoice& choice);
 

@@ -127,7 +127,7 @@ PredictedAccuracy TermPrediction::of(const FilterModel& model) const {
   track_->run(model, pass,
               [&sums](const PairedCovariance& pair, const LinearFilterRun::Epoch& epoch,
                       const Eigen::Matrix3d& C_en) { sums.add(pair, epoch, C_en); });
-  return sums.result(track_->path.plan.scene().budget.metric);
+  return sums.result(track_->path.plan.scene().limit.metric);
 }
 
 double TermPrediction::contribution_m(const std::vector<ErrorSource>& sources) const {

@@ -166,7 +166,7 @@ std::vector<MeasuredAccuracy> measured(const std::vector<ReductionCase>& cases, 
       threads);
   std::vector<MeasuredAccuracy> result;
   for (const auto& of_case : runs) {
-    result.push_back(case_summary(scene.budget.metric, of_case, runs.front()));
+    result.push_back(case_summary(scene.limit.metric, of_case, runs.front()));
   }
   return result;
 }

@@ -1,5 +1,5 @@
 /// @file
-/// One number for the size of a horizontal position error: what a budget is stated in.
+/// One number for the size of a horizontal position error: what a limit is stated in.
 #pragma once
 
 #include <Eigen/Core>

@@ -73,7 +73,7 @@ void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
              scene.imu_name, scene.gnss.interval_s, scene.duration_s);
   fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
-             leeway::name(scene.budget.metric), r.window_s, r.true_m, r.worst_s);
+             leeway::name(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
   fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
   if (r.settled) {
     fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);

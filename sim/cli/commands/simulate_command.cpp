@@ -7,7 +7,6 @@
 #include <string>
 
 #include "leeway/sim/motion/trajectories.hpp"
-#include "leeway/sim/scene/scene_file.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
@@ -135,7 +134,7 @@ int run(SimulateOptions options) {
     throw Error("simulate: give --scene FILE.toml or --trajectory NAME");
   }
   const sim::Scene scene =
-      options.scene.empty() ? scene_from_options(options) : sim::read_scene(options.scene);
+      options.scene.empty() ? scene_from_options(options) : scene_from_file(options.scene);
   options.logs.seed = options.seed.value_or(scene.first_seed);
   validate(scene);
   const std::filesystem::path description = options.logs.out / "scene.json";

@@ -22,7 +22,7 @@ void print_budget_conditions(const sim::ModelReduction& budget, int repeat) {
   const sim::Scene& scene = budget.scene;
   fmt::print("Scene '{}': {:g} s, IMU {} at {:g} Hz, fixes every {:g} s; limit {:g} m ({})\n",
              scene.name, scene.duration_s, scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s,
-             scene.budget.limit_m, name(scene.budget.metric));
+             scene.limit.limit_m, name(scene.limit.metric));
   fmt::print(
       "Errors before each fix in the last {:g} s: {} trials, seeds {} to {}, no outliers, no gate. "
       "Cost: median of {} runs of the filter, ns per second of IMU data.\n",
@@ -40,7 +40,7 @@ void print_terms(const sim::ModelReduction& budget) {
     table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
                number(term.predicted_m, 5), number(term.measured_m, 5),
                number(term.predicted_m / term.measured_m, 2),
-               remark(term, budget.scene.budget.limit_m), fmt::format("{}", term.diverged),
+               remark(term, budget.scene.limit.limit_m), fmt::format("{}", term.diverged),
                number(cost_of(term), 0),
                !term.cost     ? "unmodelled"
                : term.is_kept ? "kept"
@@ -61,7 +61,7 @@ void print_models(const sim::ModelReduction& budget) {
     table.add({title, number(model->cost.median_ns_per_s, 0),
                number(budget.full.cost.median_ns_per_s / model->cost.median_ns_per_s, 2),
                number(model->predicted.error_m, 3), number(model->measured.error_m, 3),
-               number(budget.scene.budget.limit_m, 3), number(r.rms_horizontal_m, 3),
+               number(budget.scene.limit.limit_m, 3), number(r.rms_horizontal_m, 3),
                number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
                number(model->predicted.nees, 2), fmt::format("{}", r.diverged)});
   }
@@ -105,7 +105,7 @@ void print_model_budget(const sim::ModelReduction& budget, int repeat) {
 }
 
 Json model_budget_json(const sim::ModelReduction& budget) {
-  const double limit_m = budget.scene.budget.limit_m;
+  const double limit_m = budget.scene.limit.limit_m;
   Json terms = Json::array();
   for (const sim::TermWorth& term : budget.terms) {
     terms.push_back({{"term", sim::name(term.term)},
@@ -134,7 +134,7 @@ std::string model_budget_comment(const sim::ModelReduction& budget) {
       "The cheapest filter found for the scene '{}' within {:g} m ({}): {:.3f} m in {} trials,\n"
       "{:.3f} m with the full model; {:.2f} times as fast; RMS over sigma {:.3f} ({:.3f}), NEES "
       "{:.2f} ({:.2f}).",
-      budget.scene.name, budget.scene.budget.limit_m, name(budget.scene.budget.metric),
+      budget.scene.name, budget.scene.limit.limit_m, name(budget.scene.limit.metric),
       reduced.measured.error_m, reduced.measured.figures.trials, budget.full.measured.error_m,
       budget.full.cost.median_ns_per_s / reduced.cost.median_ns_per_s,
       reduced.measured.figures.rms_over_sigma, budget.full.measured.figures.rms_over_sigma,
