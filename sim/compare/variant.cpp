@@ -15,8 +15,7 @@ constexpr std::array kAllSchemes{Scheme::kExplicitEuler, Scheme::kSemiImplicitEu
 constexpr std::array kAllGravities{GravityModel::kConstant, GravityModel::kJ2,
                                    GravityModel::kNormal};
 constexpr std::array kRotations{EarthRotation::kOff, EarthRotation::kOn};
-constexpr std::array kKernels{KernelForm::kDense, KernelForm::kSymmetric, KernelForm::kUd,
-                              KernelForm::kSquareRoot};
+constexpr std::array kKernels{KernelForm::kDense, KernelForm::kSymmetric, KernelForm::kUd};
 constexpr std::array kForms{UpdateForm::kSimple, UpdateForm::kJoseph, UpdateForm::kBatch};
 constexpr std::array kPrecisions{Precision::kFloat, Precision::kDouble};
 constexpr std::array kIntervalsS{0.0, 0.1, 1.0};
@@ -33,8 +32,7 @@ std::string_view word(EarthRotation rotation) {
 }
 
 std::string_view word(KernelForm kernel) {
-  constexpr std::array<std::string_view, kKernels.size()> kWords{"dense", "symmetric", "ud",
-                                                                 "square-root"};
+  constexpr std::array<std::string_view, kKernels.size()> kWords{"dense", "symmetric", "ud"};
   return kWords[static_cast<std::size_t>(kernel)];
 }
 

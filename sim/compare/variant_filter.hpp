@@ -9,7 +9,6 @@
 #include "leeway/alternatives/invariant_ekf.hpp"
 #include "leeway/alternatives/kernel_ekf.hpp"
 #include "leeway/alternatives/reset_filter.hpp"
-#include "leeway/alternatives/square_root_kernel.hpp"
 #include "leeway/alternatives/ud_kernel.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
 #include "leeway/sim/compare/variant.hpp"
@@ -59,8 +58,6 @@ auto visit_variant_filter(const Variant& variant, const EkfConfig& believed,
       return visit_kernel_ekf<DenseKernel>(variant, config, start, visitor);
     case KernelForm::kUd:
       return visit_kernel_ekf<UdKernel>(variant, config, start, visitor);
-    case KernelForm::kSquareRoot:
-      return visit_kernel_ekf<SquareRootKernel>(variant, config, start, visitor);
     case KernelForm::kSymmetric:
       break;
   }

@@ -22,7 +22,7 @@ const bytes = [...Buffer.from(page)];
 if (bytes.some((byte) => byte > 127)) throw new Error("the page must be ASCII");
 await writeFile(
   output,
-  `#include "report_template.hpp"
+  `#include "sim/report/report_template.hpp"
 
 namespace leeway::cli {
 namespace {

@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include "leeway/alternatives/dense_kernel.hpp"
-#include "leeway/alternatives/square_root_kernel.hpp"
 #include "leeway/alternatives/ud_kernel.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
 #include "tests/bench/covariance_case.hpp"
@@ -89,8 +88,6 @@ BENCHMARK(predict_aggregated<SymmetricKernel<float>>);
 BENCHMARK(predict_aggregated<DenseKernel<double>>);
 BENCHMARK(predict_aggregated<UdKernel<double>>);
 BENCHMARK(predict_aggregated<UdKernel<float>>);
-BENCHMARK(predict_aggregated<SquareRootKernel<double>>);
-BENCHMARK(predict_aggregated<SquareRootKernel<float>>);
 BENCHMARK(fix<DenseKernel<double>, UpdateForm::kSimple>);
 BENCHMARK(fix<DenseKernel<double>, UpdateForm::kJoseph>);
 BENCHMARK(fix<DenseKernel<double>, UpdateForm::kBatch>);
@@ -102,8 +99,6 @@ BENCHMARK(fix<SymmetricKernel<float>, UpdateForm::kJoseph>);
 BENCHMARK(fix<SymmetricKernel<float>, UpdateForm::kBatch>);
 BENCHMARK(fix<UdKernel<double>>);
 BENCHMARK(fix<UdKernel<float>>);
-BENCHMARK(fix<SquareRootKernel<double>>);
-BENCHMARK(fix<SquareRootKernel<float>>);
 
 }  // namespace
 }  // namespace leeway

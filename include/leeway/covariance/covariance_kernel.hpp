@@ -15,10 +15,9 @@ namespace leeway {
 
 /// The kernels by name, for programs that choose at run time.
 enum class KernelForm {
-  kDense,       ///< full products: the reference of tests and benchmarks
-  kSymmetric,   ///< blocks of Phi, symmetric P (default)
-  kUd,          ///< P = U D U^T
-  kSquareRoot,  ///< P = S S^T
+  kDense,      ///< full products: the reference of tests and benchmarks
+  kSymmetric,  ///< blocks of Phi, symmetric P (default)
+  kUd,         ///< P = U D U^T
 };
 
 /// How the dense and the symmetric kernel take a measurement.

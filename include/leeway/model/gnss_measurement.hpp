@@ -4,7 +4,9 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 
+#include "leeway/earth/time.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/measurement.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
@@ -25,6 +27,29 @@ inline double gnss_position_weight(double dt_s, double correlation_s) {
   // (1 - a) / (1 + a) is the tanh; a second fix at the same time repeats the first: weight 0.
   return correlation_s > 0.0 ? std::sqrt(std::tanh(0.5 * dt_s / correlation_s)) : 1.0;
 }
+
+/// The gnss_position_weight() of each position by the time since the one that was fused before it.
+/// The first has weight 1.
+class PositionWeight {
+ public:
+  /// @param correlation_s  of the errors of positions; 0: none, and every weight is 1
+  explicit PositionWeight(double correlation_s) : correlation_s_(correlation_s) {}
+
+  double of(Time t) const {
+    return last_ ? gnss_position_weight(to_seconds(t - *last_), correlation_s_) : 1.0;
+  }
+  void fused(Time t) { last_ = t; }
+
+  /// The state that a snapshot keeps.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(last_);
+  }
+
+ private:
+  double correlation_s_;
+  std::optional<Time> last_{};
+};
 
 /// Linearizes the fix about the estimate: 3 rows for a position or a velocity, 6 for both, position
 /// first. @pre is_usable(fix), fix.time is the estimate's time.

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <string>
 
-#include "report_template.hpp"
+#include "sim/report/report_template.hpp"
 
 namespace leeway::cli {
 namespace {

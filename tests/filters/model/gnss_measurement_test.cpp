@@ -99,6 +99,19 @@ TEST_CASE("R and the innovation are those of the fix, position first") {
   CHECK(near(m.innovation, expected, 2e-9));  // ECEF rounding
 }
 
+TEST_CASE("a position counts by the time since the one that was fused before it") {
+  PositionWeight weight(20.0);
+  CHECK(weight.of(time_from_seconds(5.0)) == 1.0);
+  weight.fused(time_from_seconds(5.0));
+  CHECK(weight.of(time_from_seconds(5.0)) == 0.0);
+  CHECK(weight.of(time_from_seconds(15.0)) == gnss_position_weight(10.0, 20.0));
+  // What was asked about and not fused does not count.
+  CHECK(weight.of(time_from_seconds(25.0)) == gnss_position_weight(20.0, 20.0));
+  PositionWeight of_white(0.0);
+  of_white.fused(time_from_seconds(5.0));
+  CHECK(of_white.of(time_from_seconds(5.1)) == 1.0);
+}
+
 TEST_CASE("the antenna moves as the trajectory carries it") {
   const sim::Trajectory trajectory = sim::manoeuvre_car();
   const Eigen::Vector3d lever_b_m(1.0, -2.0, -1.5);
