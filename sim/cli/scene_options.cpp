@@ -9,6 +9,7 @@
 #include "leeway/sim/scene/scene_file.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -54,6 +55,8 @@ sim::Scene changed_scene(const SceneChoice& choice) {
   if (!choice.filter.empty()) sim::read_filter_file(choice.filter, scene);
   if (!choice.limits_m.empty()) scene.limit.limit_m = choice.limits_m.front();
   if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
+  if (choice.trials) scene.trials = *choice.trials;
+  if (choice.first_seed) scene.first_seed = *choice.first_seed;
   return scene;
 }
 
@@ -80,7 +83,7 @@ Json gnss_json(const sim::GnssScenario& gnss) {
 sim::Scene scene_from_file(const std::filesystem::path& file, std::optional<double> duration_s) {
   std::vector<std::string> notes;
   sim::Scene scene = sim::read_scene(file, duration_s, &notes);
-  for (const std::string& text : notes) fmt::print(stderr, "leeway: note: {}\n", text);
+  for (const std::string& text : notes) note(text);
   return scene;
 }
 
@@ -100,7 +103,7 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
                  "correlation time of an hour")
       ->check(CLI::IsMember(names_of(sim::kBiasModels)));
   app.add_option("--filter", choice.filter,
-                 "how the filter runs, in place of the scene's [filter]: a file that leeway budget "
+                 "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
                  "--write made")
       ->type_name("FILE.toml");
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
@@ -115,6 +118,13 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
       ->type_name("SECONDS");
   app.add_option("--interval-s", choice.interval_s, "time between fixes, s")
       ->check(CLI::Range(1e-3, 1e6));
+}
+
+void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::string& meaning) {
+  app.add_option("--trials", choice.trials, meaning)->check(CLI::Range(1, most));
+  app.add_option("--first-seed", choice.first_seed,
+                 "trial k has this seed + k; in place of the scene's")
+      ->check(CLI::NonNegativeNumber);
 }
 
 std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
@@ -153,6 +163,13 @@ Json scene_json(const sim::Scene& scene) {
           {"last_s", scene.limit.last_s},
           {"trials", scene.trials},
           {"first_seed", scene.first_seed}};
+}
+
+Json timed_input_json(const sim::Scene& scene, int repeat) {
+  Json input = scene_json(scene);
+  input.erase("gate_probability");
+  input["repeat"] = repeat;
+  return input;
 }
 
 }  // namespace leeway::cli

@@ -51,7 +51,7 @@ void MomentWriter::write(const sim::CovariancePoint& point) {
   csv_.write(time_from_seconds(point.t_s), row);
 }
 
-std::string budget_csv(const sim::ErrorBudget& budget) {
+std::string error_budget_csv(const sim::ErrorBudget& budget) {
   const Eigen::Matrix3d sum = total(budget);
   std::string csv = "source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n";
   const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {

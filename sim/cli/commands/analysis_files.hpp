@@ -23,7 +23,7 @@ class MomentWriter {
 };
 
 /// A row for each source and one for the total, as CSV.
-std::string budget_csv(const sim::ErrorBudget& budget);
+std::string error_budget_csv(const sim::ErrorBudget& budget);
 
 /// Sum over north and east.
 double horizontal_m2(const Eigen::Matrix3d& mean_sq_n_m2);

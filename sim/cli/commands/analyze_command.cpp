@@ -3,27 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "leeway/sim/analysis/covariance_analysis.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/commands/analysis_files.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/report.hpp"
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
 
-struct AnalyzeOptions {
+struct AnalyzeChoice {
   SceneChoice scene{};
   std::filesystem::path moments{};
-  std::filesystem::path budget{};
-  std::filesystem::path report{};
-  bool json{false};
+  std::filesystem::path error_budget{};
+  Output output{};
 };
 
 std::string optimism(double ratio) {
@@ -69,7 +67,7 @@ void print_sources(sim::ErrorBudget budget) {
   table.print();
 }
 
-void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
+void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
              scene.imu_name, scene.gnss.interval_s, scene.duration_s);
   fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
@@ -109,7 +107,7 @@ Json results_json(const sim::CovarianceAnalysis& r) {
 }
 
 /// Horizontal (root of the sum of both variances) and down.
-void add_moment(ReportTable& table, const sim::CovariancePoint& point) {
+void add_moment(SeriesTable& table, const sim::CovariancePoint& point) {
   const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(point.r_e_m)).transpose();
   const auto variances = [&C_ne](const ErrorMatrix& P) -> Eigen::Vector3d {
     return (C_ne * P.block<3, 3>(kDr, kDr) * C_ne.transpose()).diagonal();
@@ -121,15 +119,15 @@ void add_moment(ReportTable& table, const sim::CovariancePoint& point) {
              std::sqrt(true_m2.z())});
 }
 
-int run(const AnalyzeOptions& options) {
+int run(const AnalyzeChoice& options) {
   const sim::Scene scene = scene_of(options.scene);
   std::optional<MomentWriter> moments;
   if (!options.moments.empty()) writing([&] { moments.emplace(options.moments); });
   Progress progress("analyze");
   sim::CovarianceConfig config;
   config.by_source = true;
-  ReportTable shown({"t_s", "claimed_h_m", "true_h_m", "claimed_d_m", "true_d_m"});
-  const bool reported = !options.report.empty();
+  SeriesTable shown({"t_s", "claimed_h_m", "true_h_m", "claimed_d_m", "true_d_m"});
+  const bool reported = !options.output.report.empty();
   if (moments || reported || progress.visible()) {
     config.observer = [&](const sim::CovariancePoint& point) {
       if (moments) writing([&] { moments->write(point); });
@@ -139,35 +137,34 @@ int run(const AnalyzeOptions& options) {
   }
   const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
   if (moments) writing([&] { moments->close(); });
-  if (!options.budget.empty()) write_file(options.budget, budget_csv(result.budget));
-  const Json answer = answer_json("analyze", scene_json(scene), results_json(result));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_report(scene, result);
+  if (!options.error_budget.empty()) {
+    write_file(options.error_budget, error_budget_csv(result.budget));
   }
-  write_report(options.report, answer, {{"moments", shown.json()}});
+  show(
+      options.output, answer_json("analyze", scene_json(scene), results_json(result)),
+      [&] { print_tables(scene, result); },
+      [&] {
+        return Json{{"moments", shown.json()}};
+      });
   return kSuccess;
 }
 
-}  // namespace
-
-void add_analyze_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "analyze", "What the filter claims in a scene, what is true, and where the error comes from");
-  const auto options = std::make_shared<AnalyzeOptions>();
-  add_scene_options(*app, options->scene);
-  app->add_option("--out", options->moments,
-                  "write claimed and true sigmas at every moment of the scene as CSV")
+void add_options(CLI::App& app, AnalyzeChoice& options) {
+  add_scene_options(app, options.scene);
+  app.add_option("--out", options.moments,
+                 "write claimed and true sigmas at every moment of the scene as CSV")
       ->type_name("FILE");
-  app->add_option("--budget", options->budget, "write the error budget as CSV")->type_name("FILE");
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Example:\n"
-      "  leeway analyze --scene docs/examples/scenes/town-car.toml --interval-s 5 --budget "
-      "budget.csv");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  app.add_option("--error-budget", options.error_budget, "write the error budget as CSV")
+      ->type_name("FILE");
+  add_output_options(app, options.output);
 }
 
+const Command kAnalyze{
+    "analyze", "What the filter claims in a scene, what is true, and where the error comes from",
+    "Example:\n"
+    "  leeway analyze --scene docs/examples/scenes/town-car.toml --interval-s 5 --error-budget "
+    "budget.csv",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -1,14 +1,12 @@
 #include <algorithm>
-#include <filesystem>
-#include <memory>
-#include <optional>
 
 #include "leeway/sim/compare/compare.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/compare_report.hpp"
-#include "sim/cli/pages/report.hpp"
 #include "sim/cli/scene_options.hpp"
+#include "sim/cli/tables/compare_tables.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -16,83 +14,56 @@ namespace {
 constexpr double kEnoughS = 600.0;
 constexpr double kEnoughFixes = 10.0;
 
-struct CompareCommand {
-  SceneChoice scene{};
-  int trials{10};
-  std::optional<std::uint64_t> first_seed{};
+struct CompareChoice {
+  SceneChoice scene{.trials = 10};
   sim::CompareOptions compare{};
-  std::filesystem::path csv{};
-  std::filesystem::path report{};
-  bool json{false};
+  Output output{};
 };
 
-/// A beginning of the scene unless --at says otherwise, and the command's trials.
-sim::Scene compared_scene(const CompareCommand& options) {
+/// A beginning of the scene unless --at says otherwise.
+sim::Scene compared_scene(const CompareChoice& options) {
   sim::Scene scene = scene_of(options.scene);
   if (!options.scene.at_s) {
     const double enough_s = std::max(kEnoughS, kEnoughFixes * scene.gnss.interval_s);
     scene.duration_s = std::min(scene.duration_s, enough_s);
   }
-  scene.trials = options.trials;
-  if (options.first_seed) scene.first_seed = *options.first_seed;
   return scene;
 }
 
-sim::Comparison compared(const CompareCommand& options) {
+sim::Comparison compared(const CompareChoice& options) {
   sim::CompareOptions shown = options.compare;
   Progress progress("compare");
-  shown.progress = [&progress](double fraction) { progress.show(fraction); };
+  shown.progress = std::ref(progress);
   return sim::compare(compared_scene(options), shown);
 }
 
-int run(const CompareCommand& options) {
+int run(const CompareChoice& options) {
   const sim::Comparison comparison = compared(options);
-  Json input = scene_json(comparison.scene);
-  input.erase("gate_probability");  // there is no gate
-  input["repeat"] = options.compare.repeat;
-  const Json answer = answer_json("compare", std::move(input), comparison_json(comparison));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_comparison(comparison, options.compare.repeat);
-  }
-  // Last: a file that cannot be written must not cost the minutes that the rest took.
-  if (!options.csv.empty()) write_file(options.csv, comparison_csv(comparison));
-  write_report(options.report, answer);
+  const int repeat = options.compare.repeat;
+  show(options.output,
+       answer_json("compare", timed_input_json(comparison.scene, repeat),
+                   comparison_json(comparison)),
+       [&] { print_comparison(comparison, repeat); });
   const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
                                [](const sim::Compared& c) { return c.on_front; });
   return any ? kSuccess : kNoAnswer;
 }
 
-}  // namespace
-
-void add_compare_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "compare", "What each way of running the filter costs in a scene, and how much it errs");
-  const auto options = std::make_shared<CompareCommand>();
-  add_scene_options(*app, options->scene);
-  app->add_option("--trials", options->trials, "of every variant, for its errors")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  app->add_option("--first-seed", options->first_seed,
-                  "trial k has this seed + k; in place of the scene's")
-      ->check(CLI::NonNegativeNumber);
-  app->add_option("--repeat", options->compare.repeat, "timed runs of every variant")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app->add_option("--threads", options->compare.threads,
-                  "of the runs that are not timed; 0: all processors")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app->add_option("--csv", options->csv, "write a row for each variant as CSV")->type_name("FILE");
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"
-      "whenever asked for; costs are of this machine, now.\n"
-      "Example:\n"
-      "  leeway compare --scene docs/examples/scenes/square-loop.toml --csv variants.csv");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+void add_options(CLI::App& app, CompareChoice& options) {
+  add_scene_options(app, options.scene);
+  add_trial_options(app, options.scene, 10'000, "of every variant, for its errors (default: 10)");
+  add_repeat_option(app, options.compare.repeat);
+  add_threads_option(app, options.compare.threads, "of the runs that are not timed; ");
+  add_output_options(app, options.output);
 }
 
+const Command kCompare{
+    "compare", "What each way of running the filter costs in a scene, and how much it errs",
+    "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"
+    "whenever asked for; costs are of this machine, now.\n"
+    "Example:\n"
+    "  leeway compare --scene docs/examples/scenes/square-loop.toml --json > variants.json",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <string>
 
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
 #include "sim/cli/scene_logs.hpp"
@@ -26,7 +26,7 @@ struct GnssOptions {
   double correlation_s{30.0};
 };
 
-struct SimulateOptions {
+struct SimulateChoice {
   std::filesystem::path scene{};  ///< in place of the options from here ..
   std::string trajectory{};
   double duration_s{600.0};
@@ -36,7 +36,7 @@ struct SimulateOptions {
   std::optional<Eigen::Vector3d> lever_arm_b_m{};  ///< .. to here
   std::optional<std::uint64_t> seed{};
   SceneLogOptions logs{};
-  bool json{false};
+  Output output{};
 };
 
 using Factory = std::function<sim::Trajectory(double duration_s)>;
@@ -59,7 +59,7 @@ const std::map<std::string, Factory>& factories() {
   return all;
 }
 
-sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
+sim::GnssErrorModel gnss_model(const SimulateChoice& o) {
   const GnssOptions& g = o.gnss;
   sim::GnssErrorModel model;
   model.position_sigma_n_m = {g.sigma_h_m, g.sigma_h_m, g.sigma_v_m};
@@ -70,7 +70,7 @@ sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
   return model;
 }
 
-sim::Scene scene_from_options(const SimulateOptions& options) {
+sim::Scene scene_from_options(const SimulateChoice& options) {
   const NamedImu imu = imu_of(options.imu);
   sim::Scene scene;
   scene.name = options.trajectory;
@@ -83,7 +83,7 @@ sim::Scene scene_from_options(const SimulateOptions& options) {
   return scene;
 }
 
-Json options_json(const SimulateOptions& options, const sim::Scene& scene) {
+Json options_json(const SimulateChoice& options, const sim::Scene& scene) {
   const GnssOptions& g = options.gnss;
   return {{"trajectory", options.trajectory},
           {"duration_s", options.duration_s},
@@ -98,7 +98,7 @@ Json options_json(const SimulateOptions& options, const sim::Scene& scene) {
           {"lever_arm_m", json_of(options.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))}};
 }
 
-Json input_json(const SimulateOptions& options, const sim::Scene& scene) {
+Json input_json(const SimulateChoice& options, const sim::Scene& scene) {
   Json input = options.scene.empty() ? options_json(options, scene) : scene_json(scene);
   input["truth_rate_hz"] = options.logs.truth_rate_hz;
   input["seed"] = options.logs.seed;
@@ -115,7 +115,7 @@ Json results_json(const SceneLogs& logs, const std::filesystem::path& descriptio
           {"truth_rows", logs.truth_rows}};
 }
 
-void print_report(const SimulateOptions& options, const sim::Scene& scene, const SceneLogs& logs) {
+void print_tables(const SimulateChoice& options, const sim::Scene& scene, const SceneLogs& logs) {
   fmt::print("Simulated {} s of '{}' into {}\n", scene.duration_s, scene.name,
              options.logs.out.string());
   Table table({"<log", "rows", "<file"});
@@ -129,7 +129,8 @@ void print_report(const SimulateOptions& options, const sim::Scene& scene, const
   }
 }
 
-int run(SimulateOptions options) {
+int run(const SimulateChoice& asked) {
+  SimulateChoice options = asked;
   if (options.scene.empty() && options.trajectory.empty()) {
     throw Error("simulate: give --scene FILE.toml or --trajectory NAME");
   }
@@ -144,11 +145,9 @@ int run(SimulateOptions options) {
     write_file(description, input_json(options, scene).dump(2) + "\n");
     return written;
   });
-  if (options.json) {
-    print_json("simulate", input_json(options, scene), results_json(logs, description));
-  } else {
-    print_report(options, scene, logs);
-  }
+  show(options.output,
+       answer_json("simulate", input_json(options, scene), results_json(logs, description)),
+       [&] { print_tables(options, scene, logs); });
   return kSuccess;
 }
 
@@ -174,44 +173,42 @@ void exclude_all(CLI::App& app, CLI::Option* scene) {
   }
 }
 
-}  // namespace
-
-void add_simulate_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "simulate", "Make IMU, GNSS and truth logs of a drive, for leeway fuse to read");
-  const auto options = std::make_shared<SimulateOptions>();
+void add_options(CLI::App& app, SimulateChoice& options) {
   std::vector<std::string> trajectories;
   for (const auto& [name, make] : factories()) trajectories.push_back(name);
-  app->add_option("--trajectory", options->trajectory, "the motion")
+  app.add_option("--trajectory", options.trajectory, "the motion")
       ->check(CLI::IsMember(trajectories));
-  app->add_option("--duration-s", options->duration_s, "length, s")
+  app.add_option("--duration-s", options.duration_s, "length, s")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  app->add_option("--imu-rate-hz", options->imu_rate_hz, "IMU increments per second")
+  app.add_option("--imu-rate-hz", options.imu_rate_hz, "IMU increments per second")
       ->check(CLI::Range(1.0, 1e4))
       ->capture_default_str();
-  add_imu_options(*app, options->imu);
-  add_gnss_options(*app, options->gnss);
-  add_numbers<3>(*app, "--lever", "X,Y,Z", options->lever_arm_b_m,
+  add_imu_options(app, options.imu);
+  add_gnss_options(app, options.gnss);
+  add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
                  "IMU to antenna, forward, right, down, m (default: 0,0,0)");
-  exclude_all(*app, app->add_option("--scene", options->scene,
-                                    "scene file, in place of all options above it")
-                        ->type_name("FILE.toml"));
-  app->add_option("--truth-rate-hz", options->logs.truth_rate_hz, "truth rows per second")
+  exclude_all(
+      app, app.add_option("--scene", options.scene, "scene file, in place of all options above it")
+               ->type_name("FILE.toml"));
+  app.add_option("--truth-rate-hz", options.logs.truth_rate_hz, "truth rows per second")
       ->check(CLI::Range(0.1, 1e4))
       ->capture_default_str();
-  app->add_option("--seed", options->seed, "of the random numbers (default: 1, or the scene's)");
-  app->add_option("--out", options->logs.out, "folder to write to; made when missing")
+  app.add_option("--seed", options.seed, "of the random numbers (default: 1, or the scene's)");
+  app.add_option("--out", options.logs.out, "folder to write to; made when missing")
       ->type_name("DIR")
       ->required();
-  app->add_flag("--gzip", options->logs.gzip, "compress the logs: imu.csv.gz and so on");
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of a table");
-  app->footer(
-      "The GNSS defaults are typical of a single-frequency code receiver under open sky.\n"
-      "Example:\n"
-      "  leeway simulate --trajectory car --duration-s 1800 --imu-class tactical --out drive\n"
-      "  leeway simulate --scene docs/examples/scenes/tunnel.toml --out tunnel");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  app.add_flag("--gzip", options.logs.gzip, "compress the logs: imu.csv.gz and so on");
+  add_json_option(app, options.output.json);
 }
 
+const Command kSimulate{
+    "simulate", "Make IMU, GNSS and truth logs of a drive, for leeway fuse to read",
+    "The GNSS defaults are typical of a single-frequency code receiver under open sky.\n"
+    "Example:\n"
+    "  leeway simulate --trajectory car --duration-s 1800 --imu-class tactical --out drive\n"
+    "  leeway simulate --scene docs/examples/scenes/tunnel.toml --out tunnel",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -43,10 +43,10 @@ std::array<double, 2> nis_band(int dof) {
 FuseSeries::FuseSeries()
     : solution_(solution_columns()),
       track_({"t_s", "east_m", "north_m", "true_east_m", "true_north_m"},
-             ReportTable::Keep::kFirst),
+             SeriesTable::Keep::kFirst),
       fixes_({"t_s", "nis", "nis_low", "nis_high"}),
-      outages_({"since_s", "outage", "error_h_m", "sigma_h_m"}, ReportTable::Keep::kFirst),
-      verdicts_(kVerdicts, ReportTable({"t_s"}, ReportTable::Keep::kFirst)) {}
+      outages_({"since_s", "outage", "error_h_m", "sigma_h_m"}, SeriesTable::Keep::kFirst),
+      verdicts_(kVerdicts, SeriesTable({"t_s"}, SeriesTable::Keep::kFirst)) {}
 
 sim::ReplayObserver FuseSeries::observer() {
   sim::ReplayObserver observer;
@@ -94,7 +94,7 @@ void FuseSeries::add(const UpdateOutcome& update) {
 }
 
 void FuseSeries::add_to(Json& series, const std::string& run) const {
-  const auto put = [&](const std::string& name, const ReportTable& table) {
+  const auto put = [&](const std::string& name, const SeriesTable& table) {
     if (!table.empty()) series[name] = table.json();
   };
   put("solution/" + run, solution_);

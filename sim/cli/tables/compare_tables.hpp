@@ -2,10 +2,8 @@
 /// What `leeway compare` prints and writes.
 #pragma once
 
-#include <string>
-
 #include "leeway/sim/compare/compare.hpp"
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 
@@ -13,8 +11,5 @@ namespace leeway::cli {
 void print_comparison(const sim::Comparison& comparison, int repeat);
 
 Json comparison_json(const sim::Comparison& comparison);
-
-/// A row for each variant, from the cheapest on.
-std::string comparison_csv(const sim::Comparison& comparison);
 
 }  // namespace leeway::cli

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 
 /// Rows of numbers, at most kMostRows of them: once there are more, neighbours are taken together,
 /// two by two as often as it takes.
-class ReportTable {
+class SeriesTable {
  public:
   static constexpr std::size_t kMostRows = 16384;
 
@@ -23,7 +23,7 @@ class ReportTable {
     kFirst,     ///< the first row
   };
 
-  explicit ReportTable(std::vector<std::string> columns, Keep keep = Keep::kExtremes);
+  explicit SeriesTable(std::vector<std::string> columns, Keep keep = Keep::kExtremes);
 
   /// @pre as many values as columns. NaN: missing.
   void add(std::span<const double> row);

@@ -1,10 +1,12 @@
-#include "sim/cli/pages/reduce_report.hpp"
+#include "sim/cli/tables/reduce_tables.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -18,8 +20,8 @@ std::string remark(const sim::TermWorth& term, double limit_m) {
   return sim::agrees(term, limit_m) ? "" : "apart";
 }
 
-void print_budget_conditions(const sim::ModelReduction& budget, int repeat) {
-  const sim::Scene& scene = budget.scene;
+void print_conditions(const sim::ModelReduction& reduction, int repeat) {
+  const sim::Scene& scene = reduction.scene;
   fmt::print("Scene '{}': {:g} s, IMU {} at {:g} Hz, fixes every {:g} s; limit {:g} m ({})\n",
              scene.name, scene.duration_s, scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s,
              scene.limit.limit_m, name(scene.limit.metric));
@@ -30,17 +32,17 @@ void print_budget_conditions(const sim::ModelReduction& budget, int repeat) {
       scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1, repeat);
 }
 
-void print_terms(const sim::ModelReduction& budget) {
+void print_terms(const sim::ModelReduction& reduction) {
   fmt::print(
       "\nWhat each term of the full model is worth: RMS of the difference that its substitute "
       "makes, horizontally\n");
   Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark",
                "diverged", "cost, ns/s", "<in the reduced model"});
-  for (const sim::TermWorth& term : budget.terms) {
+  for (const sim::TermWorth& term : reduction.terms) {
     table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
                number(term.predicted_m, 5), number(term.measured_m, 5),
                number(term.predicted_m / term.measured_m, 2),
-               remark(term, budget.scene.limit.limit_m), fmt::format("{}", term.diverged),
+               remark(term, reduction.scene.limit.limit_m), fmt::format("{}", term.diverged),
                number(cost_of(term), 0),
                !term.cost     ? "unmodelled"
                : term.is_kept ? "kept"
@@ -49,31 +51,31 @@ void print_terms(const sim::ModelReduction& budget) {
   table.print();
 }
 
-void print_models(const sim::ModelReduction& budget) {
+void print_models(const sim::ModelReduction& reduction) {
   fmt::print("\nThe full model, and the cheapest found that keeps the limit\n");
   Table table({"<model", "ns/s", "faster", "predicted, m", "measured, m", "limit, m", "RMS, m",
                "RMS/sigma", "NEES", "predicted NEES", "diverged"});
   for (const auto& [model, title] :
-       {std::pair{&budget.full, "full"}, std::pair{&budget.standard, "full, P every 0.1 s"},
-        std::pair{&budget.at_full_rate, "reduced, full IMU rate"},
-        std::pair{&budget.reduced, "reduced"}}) {
+       {std::pair{&reduction.full, "full"}, std::pair{&reduction.standard, "full, P every 0.1 s"},
+        std::pair{&reduction.at_full_rate, "reduced, full IMU rate"},
+        std::pair{&reduction.reduced, "reduced"}}) {
     const sim::CampaignResult& r = model->measured.figures;
     table.add({title, number(model->cost.median_ns_per_s, 0),
-               number(budget.full.cost.median_ns_per_s / model->cost.median_ns_per_s, 2),
+               number(reduction.full.cost.median_ns_per_s / model->cost.median_ns_per_s, 2),
                number(model->predicted.error_m, 3), number(model->measured.error_m, 3),
-               number(budget.scene.limit.limit_m, 3), number(r.rms_horizontal_m, 3),
+               number(reduction.scene.limit.limit_m, 3), number(r.rms_horizontal_m, 3),
                number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
                number(model->predicted.nees, 2), fmt::format("{}", r.diverged)});
   }
   table.print();
 }
 
-void print_verdict(const sim::ModelReduction& budget) {
-  const sim::CampaignResult& r = budget.full.measured.figures;
+void print_verdict(const sim::ModelReduction& reduction) {
+  const sim::CampaignResult& r = reduction.full.measured.figures;
   fmt::print(
       "\nThe reduced model {} the limit and claims {} (NEES {:.2f} to {:.2f} is consistent)\n",
-      budget.keeps_limit ? "keeps" : "misses",
-      budget.is_as_honest ? "as honestly as the full model" : "more than it keeps", r.nees_low,
+      reduction.keeps_limit ? "keeps" : "misses",
+      reduction.is_as_honest ? "as honestly as the full model" : "more than it keeps", r.nees_low,
       r.nees_high);
 }
 
@@ -97,17 +99,17 @@ Json model_json(const sim::ModelWorth& model) {
 
 }  // namespace
 
-void print_model_budget(const sim::ModelReduction& budget, int repeat) {
-  print_budget_conditions(budget, repeat);
-  print_terms(budget);
-  print_models(budget);
-  print_verdict(budget);
+void print_reduction(const sim::ModelReduction& reduction, int repeat) {
+  print_conditions(reduction, repeat);
+  print_terms(reduction);
+  print_models(reduction);
+  print_verdict(reduction);
 }
 
-Json model_budget_json(const sim::ModelReduction& budget) {
-  const double limit_m = budget.scene.limit.limit_m;
+Json reduction_json(const sim::ModelReduction& reduction) {
+  const double limit_m = reduction.scene.limit.limit_m;
   Json terms = Json::array();
-  for (const sim::TermWorth& term : budget.terms) {
+  for (const sim::TermWorth& term : reduction.terms) {
     terms.push_back({{"term", sim::name(term.term)},
                      {"substitute", sim::substitute(term.term)},
                      {"predicted_m", term.predicted_m},
@@ -117,28 +119,29 @@ Json model_budget_json(const sim::ModelReduction& budget) {
                      {"cost_ns_per_s", cost_of(term)},
                      {"kept", term.cost.has_value() && term.is_kept}});
   }
-  return {{"limit_m", limit_m},
-          {"terms", std::move(terms)},
-          {"full", model_json(budget.full)},
-          {"full_covariance_0_1_s", model_json(budget.standard)},
-          {"reduced_full_rate", model_json(budget.at_full_rate)},
-          {"reduced", model_json(budget.reduced)},
-          {"keeps_limit", budget.keeps_limit},
-          {"as_honest", budget.is_as_honest},
-          {"speedup", budget.full.cost.median_ns_per_s / budget.reduced.cost.median_ns_per_s}};
+  return {
+      {"limit_m", limit_m},
+      {"terms", std::move(terms)},
+      {"full", model_json(reduction.full)},
+      {"full_covariance_0_1_s", model_json(reduction.standard)},
+      {"reduced_full_rate", model_json(reduction.at_full_rate)},
+      {"reduced", model_json(reduction.reduced)},
+      {"keeps_limit", reduction.keeps_limit},
+      {"as_honest", reduction.is_as_honest},
+      {"speedup", reduction.full.cost.median_ns_per_s / reduction.reduced.cost.median_ns_per_s}};
 }
 
-std::string model_budget_comment(const sim::ModelReduction& budget) {
-  const sim::ModelWorth& reduced = budget.reduced;
+std::string reduction_comment(const sim::ModelReduction& reduction) {
+  const sim::ModelWorth& reduced = reduction.reduced;
   return fmt::format(
       "The cheapest filter found for the scene '{}' within {:g} m ({}): {:.3f} m in {} trials,\n"
       "{:.3f} m with the full model; {:.2f} times as fast; RMS over sigma {:.3f} ({:.3f}), NEES "
       "{:.2f} ({:.2f}).",
-      budget.scene.name, budget.scene.limit.limit_m, name(budget.scene.limit.metric),
-      reduced.measured.error_m, reduced.measured.figures.trials, budget.full.measured.error_m,
-      budget.full.cost.median_ns_per_s / reduced.cost.median_ns_per_s,
-      reduced.measured.figures.rms_over_sigma, budget.full.measured.figures.rms_over_sigma,
-      reduced.measured.figures.mean_nees, budget.full.measured.figures.mean_nees);
+      reduction.scene.name, reduction.scene.limit.limit_m, name(reduction.scene.limit.metric),
+      reduced.measured.error_m, reduced.measured.figures.trials, reduction.full.measured.error_m,
+      reduction.full.cost.median_ns_per_s / reduced.cost.median_ns_per_s,
+      reduced.measured.figures.rms_over_sigma, reduction.full.measured.figures.rms_over_sigma,
+      reduced.measured.figures.mean_nees, reduction.full.measured.figures.mean_nees);
 }
 
 }  // namespace leeway::cli

@@ -1,4 +1,4 @@
-#include "sim/cli/pages/compare_report.hpp"
+#include "sim/cli/tables/compare_tables.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "leeway/sim/compare/pareto.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -113,23 +114,6 @@ Json comparison_json(const sim::Comparison& comparison) {
                     {"dominated_by", by ? Json(comparison.variants[*by].name) : Json()}});
   }
   return rows;
-}
-
-std::string comparison_csv(const sim::Comparison& comparison) {
-  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : ""; };
-  std::string csv =
-      "variant,cost_ns_per_s,cost_least_ns_per_s,cost_most_ns_per_s,rms_horizontal_m,r95_m,nees,"
-      "consistency,trials_diverged,trials_not_finite,front,dominated_by\n";
-  for (const sim::Compared& c : comparison.variants) {
-    const sim::CampaignResult& r = c.accuracy.figures;
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", c.name,
-                       cell(c.cost.median_ns_per_s), cell(c.cost.least_ns_per_s),
-                       cell(c.cost.most_ns_per_s), cell(r.rms_horizontal_m), cell(c.accuracy.r95_m),
-                       cell(nees_of(c.accuracy)), sim::name(sim::consistency_of(c.accuracy)),
-                       r.diverged, r.not_finite, c.on_front ? 1 : 0,
-                       c.dominated_by ? comparison.variants[*c.dominated_by].name : "");
-  }
-  return csv;
 }
 
 }  // namespace leeway::cli

@@ -1,4 +1,4 @@
-#include "sim/cli/pages/interval_report.hpp"
+#include "sim/cli/tables/interval_tables.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "leeway/sim/sensors/bias_model.hpp"
+#include "sim/cli/answer.hpp"
 #include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 

@@ -1,4 +1,4 @@
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 #include <array>
 #include <bit>
@@ -40,10 +40,10 @@ Json column_json(const std::vector<double>& values, bool as_double) {
 
 }  // namespace
 
-ReportTable::ReportTable(std::vector<std::string> columns, Keep keep)
+SeriesTable::SeriesTable(std::vector<std::string> columns, Keep keep)
     : names_(std::move(columns)), keep_(keep), least_(names_.size()), greatest_(names_.size()) {}
 
-void ReportTable::add(std::span<const double> row) {
+void SeriesTable::add(std::span<const double> row) {
   if (in_last_ > 0) {
     take_together(least_.front().size() - 1, row, row);
   } else {
@@ -56,7 +56,7 @@ void ReportTable::add(std::span<const double> row) {
   in_last_ = (in_last_ + 1) % together_;
 }
 
-void ReportTable::take_together(std::size_t into, std::span<const double> least,
+void SeriesTable::take_together(std::size_t into, std::span<const double> least,
                                 std::span<const double> greatest) {
   if (keep_ == Keep::kFirst) return;
   for (std::size_t c = 1; c < names_.size(); ++c) {
@@ -67,7 +67,7 @@ void ReportTable::take_together(std::size_t into, std::span<const double> least,
 }
 
 /// @pre the last group is complete, and there are as many as kMostRows, which is even.
-void ReportTable::halve() {
+void SeriesTable::halve() {
   const std::size_t half = kMostRows / 2;
   std::vector<double> least(names_.size());
   std::vector<double> greatest(names_.size());
@@ -87,7 +87,7 @@ void ReportTable::halve() {
   together_ *= 2;
 }
 
-Json ReportTable::json() const {
+Json SeriesTable::json() const {
   const bool is_short = together_ == 1 && least_.front().size() <= kShort;
   Json columns = Json::object();
   for (std::size_t c = 0; c < names_.size(); ++c) {
