@@ -65,7 +65,7 @@ char* put_number(char* out, double value, int decimals) {
 
 void CsvWriter::Close::operator()(gzFile_s* file) const { gzclose_w(file); }
 
-CsvWriter::CsvWriter(const std::filesystem::path& path, std::initializer_list<CsvColumn> columns)
+CsvWriter::CsvWriter(const std::filesystem::path& path, const std::vector<CsvColumn>& columns)
     : path_(path), partial_(path), buffer_(kWriteBufferBytes) {
   partial_ += ".partial";
   for (const CsvColumn& column : columns) {

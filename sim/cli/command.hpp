@@ -22,7 +22,10 @@ enum ExitCode : int {
 using AddCommand = std::function<void(CLI::App& program, int& exit_code)>;
 
 /// Every command by its name.
-std::map<std::string, AddCommand>& commands();
+inline std::map<std::string, AddCommand>& commands() {
+  static std::map<std::string, AddCommand> all;
+  return all;
+}
 
 /// A command, defined once at namespace scope: that puts it among commands().
 struct Command {

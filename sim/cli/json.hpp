@@ -13,9 +13,13 @@ namespace leeway::cli {
 using Json = nlohmann::ordered_json;
 
 /// Three numbers, or null.
-Json json_of(const std::optional<Eigen::Vector3d>& v);
+inline Json json_of(const std::optional<Eigen::Vector3d>& v) {
+  return v ? Json{v->x(), v->y(), v->z()} : Json();
+}
 
-/// Numbers that are not finite become null; what is not UTF-8 is replaced.
-std::string text_of(const Json& json, int indent = -1);
+/// Numbers that are not finite become null; what is not UTF-8, as paths may be, is replaced.
+inline std::string text_of(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 }  // namespace leeway::cli

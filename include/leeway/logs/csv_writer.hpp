@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -34,7 +33,7 @@ class CsvWriter {
  public:
   /// The first column is the time, written to the nanosecond whatever its decimals.
   /// @throws Error when the file cannot be created.
-  CsvWriter(const std::filesystem::path& path, std::initializer_list<CsvColumn> columns);
+  CsvWriter(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
   ~CsvWriter();
   CsvWriter(CsvWriter&&) noexcept;
   CsvWriter& operator=(CsvWriter&&) = delete;

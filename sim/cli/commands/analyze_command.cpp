@@ -1,15 +1,16 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "leeway/logs/csv_writer.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/commands/analysis_files.hpp"
 #include "sim/cli/output.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
@@ -24,6 +25,68 @@ struct AnalyzeChoice {
   Output output{};
 };
 
+/// Of a 3 x 3 block of an error's covariance, in north, east, down.
+Eigen::Vector3d sigma_n(const sim::CovariancePoint& point, const ErrorMatrix& P, int block) {
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(point.r_e_m)).transpose();
+  return (C_ne * P.block<3, 3>(block, block) * C_ne.transpose())
+      .diagonal()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
+}
+
+std::vector<CsvColumn> moment_columns() {
+  constexpr int kExact = CsvColumn::kSingle;
+  std::vector<CsvColumn> columns{{"t_s"}, {"moment", 0}};
+  using Axes = std::array<std::string, 3>;
+  for (const Axes& axes : {Axes{"n_m", "e_m", "d_m"}, Axes{"vn_mps", "ve_mps", "vd_mps"},
+                           Axes{"tilt_n_rad", "tilt_e_rad", "heading_rad"}}) {
+    for (const std::string whose : {"claimed_", "true_"}) {
+      for (const std::string& axis : axes) columns.emplace_back((whose + axis).c_str(), kExact);
+    }
+  }
+  columns.emplace_back("optimistic_by", kExact);
+  return columns;
+}
+
+/// Claimed and true sigmas. The column moment: 0 on the way, 1 before a fix is used, 2 after.
+void write_moment(CsvWriter& csv, const sim::CovariancePoint& point) {
+  std::vector<double> row{static_cast<double>(point.moment)};
+  for (const int block : {kDr, kDv, kPsi}) {
+    for (const ErrorMatrix* P : {&point.claimed, &point.truth}) {
+      const Eigen::Vector3d sigma = sigma_n(point, *P, block);
+      row.insert(row.end(), sigma.begin(), sigma.end());
+    }
+  }
+  row.push_back(std::hypot(row[4], row[5]) / std::hypot(row[1], row[2]));
+  csv.write(time_from_seconds(point.t_s), row);
+}
+
+/// Sum over north and east.
+double horizontal_m2(const Eigen::Matrix3d& mean_sq_n_m2) {
+  return mean_sq_n_m2.topLeftCorner<2, 2>().trace();
+}
+
+/// Of all sources.
+Eigen::Matrix3d total(const sim::ErrorBudget& error_budget) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const sim::BudgetLine& line : error_budget) sum += line.mean_sq_n_m2;
+  return sum;
+}
+
+/// A row for each source and one for the total.
+std::string error_budget_csv(const sim::ErrorBudget& budget) {
+  const Eigen::Matrix3d sum = total(budget);
+  std::string csv = "source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n";
+  const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
+    const Eigen::Vector3d sigma_m = P_n.diagonal().cwiseMax(0.0).cwiseSqrt();
+    csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
+                       horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
+  };
+  for (const sim::BudgetLine& line : budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  add("total", sum);
+  return csv;
+}
+
 std::string optimism(double ratio) {
   if (std::abs(ratio - 1.0) < 5e-3) return "as honest as it can be";
   return ratio > 1.0 ? fmt::format("optimistic by x{:.2f}", ratio)
@@ -31,13 +94,10 @@ std::string optimism(double ratio) {
 }
 
 void print_sigmas(const sim::CovariancePoint& worst) {
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(worst.r_e_m)).transpose();
   Table table({"<1 sigma", "north", "east", "down"});
   const auto add = [&](const char* what, const ErrorMatrix& P, int block, double unit) {
-    const Eigen::Matrix3d P_n = C_ne * P.block<3, 3>(block, block) * C_ne.transpose();
-    std::vector<std::string> cells{what};
-    for (int i = 0; i < 3; ++i) cells.push_back(number(std::sqrt(P_n(i, i)) / unit, 4));
-    table.add(std::move(cells));
+    const Eigen::Vector3d sigma = sigma_n(worst, P, block) / unit;
+    table.add({what, number(sigma.x(), 4), number(sigma.y(), 4), number(sigma.z(), 4)});
   };
   add("position claimed, m", worst.claimed, kDr, 1.0);
   add("position true, m", worst.truth, kDr, 1.0);
@@ -108,21 +168,17 @@ Json results_json(const sim::CovarianceAnalysis& r) {
 
 /// Horizontal (root of the sum of both variances) and down.
 void add_moment(SeriesTable& table, const sim::CovariancePoint& point) {
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(point.r_e_m)).transpose();
-  const auto variances = [&C_ne](const ErrorMatrix& P) -> Eigen::Vector3d {
-    return (C_ne * P.block<3, 3>(kDr, kDr) * C_ne.transpose()).diagonal();
-  };
-  const Eigen::Vector3d claimed_m2 = variances(point.claimed);
-  const Eigen::Vector3d true_m2 = variances(point.truth);
-  const auto horizontal_m = [](const Eigen::Vector3d& m2) { return std::sqrt(m2.x() + m2.y()); };
-  table.add({point.t_s, horizontal_m(claimed_m2), horizontal_m(true_m2), std::sqrt(claimed_m2.z()),
-             std::sqrt(true_m2.z())});
+  const Eigen::Vector3d claimed_m = sigma_n(point, point.claimed, kDr);
+  const Eigen::Vector3d true_m = sigma_n(point, point.truth, kDr);
+  table.add({point.t_s, std::hypot(claimed_m.x(), claimed_m.y()),
+             std::hypot(true_m.x(), true_m.y()), claimed_m.z(), true_m.z()});
 }
 
 int run(const AnalyzeChoice& options) {
   const sim::Scene scene = scene_of(options.scene);
-  std::optional<MomentWriter> moments;
-  if (!options.moments.empty()) writing([&] { moments.emplace(options.moments); });
+  std::optional<CsvWriter> moments;
+  if (!options.moments.empty())
+    writing([&] { moments.emplace(options.moments, moment_columns()); });
   Progress progress("analyze");
   sim::CovarianceConfig config;
   config.by_source = true;
@@ -130,7 +186,7 @@ int run(const AnalyzeChoice& options) {
   const bool reported = !options.output.report.empty();
   if (moments || reported || progress.visible()) {
     config.observer = [&](const sim::CovariancePoint& point) {
-      if (moments) writing([&] { moments->write(point); });
+      if (moments) writing([&] { write_moment(*moments, point); });
       if (reported) add_moment(shown, point);
       progress.show(point.t_s / scene.duration_s);
     };

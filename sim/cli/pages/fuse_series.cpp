@@ -10,26 +10,15 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<std::string>& solution_columns() {
-  static const std::vector<std::string> names{"t_s",
-                                              "error_n_m",
-                                              "error_e_m",
-                                              "error_d_m",
-                                              "sigma_n_m",
-                                              "sigma_e_m",
-                                              "sigma_d_m",
-                                              "b_a_mps2_forward",
-                                              "b_a_mps2_right",
-                                              "b_a_mps2_down",
-                                              "sigma_b_a_mps2_forward",
-                                              "sigma_b_a_mps2_right",
-                                              "sigma_b_a_mps2_down",
-                                              "b_g_radps_forward",
-                                              "b_g_radps_right",
-                                              "b_g_radps_down",
-                                              "sigma_b_g_radps_forward",
-                                              "sigma_b_g_radps_right",
-                                              "sigma_b_g_radps_down"};
+std::vector<std::string> solution_columns() {
+  std::vector<std::string> names{"t_s"};
+  const auto add = [&names](const std::string& stem, std::initializer_list<const char*> axes) {
+    for (const char* axis : axes) names.push_back(stem + axis);
+  };
+  for (const char* stem : {"error_", "sigma_"}) add(stem, {"n_m", "e_m", "d_m"});
+  for (const char* stem : {"b_a_mps2_", "sigma_b_a_mps2_", "b_g_radps_", "sigma_b_g_radps_"}) {
+    add(stem, {"forward", "right", "down"});
+  }
   return names;
 }
 
