@@ -1,6 +1,5 @@
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <set>
 #include <string>
 
@@ -18,10 +17,8 @@ std::string compare(const std::string& options) {
 
 }  // namespace
 
-TEST_CASE("compare --json and --csv: the contract" * doctest::test_suite("heavy")) {
-  const TempDir dir;
-  const auto object =
-      leeway(compare("--first-seed 3 --json --csv " + quoted(dir / "v.csv"))).json();
+TEST_CASE("compare --json: the contract" * doctest::test_suite("heavy")) {
+  const auto object = leeway(compare("--first-seed 3 --json")).json();
   CHECK(object.at("command") == "compare");
   CHECK(object.at("input").at("trials") == 2);
   CHECK(object.at("input").at("first_seed") == 3);
@@ -56,9 +53,6 @@ TEST_CASE("compare --json and --csv: the contract" * doctest::test_suite("heavy"
     }
   }
   CHECK(on_front >= 1);
-  const std::string csv = read_file(dir / "v.csv");
-  CHECK(csv.starts_with("variant,cost_ns_per_s,"));
-  CHECK(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')) == results.size() + 1);
 }
 
 TEST_CASE("compare prints the front, then everything, and under what conditions" *
@@ -75,8 +69,8 @@ TEST_CASE("compare prints the front, then everything, and under what conditions"
 }
 
 TEST_CASE("compare refuses what it cannot do, and says what to do") {
-  for (const char* options : {"--trials 0", "--repeat 0", "--repeat 1001", "--threads -1",
-                              "--first-seed -3", "--at 0", "--csv"}) {
+  for (const char* options :
+       {"--trials 0", "--repeat 0", "--repeat 1001", "--threads -1", "--first-seed -3", "--at 0"}) {
     CAPTURE(options);
     const Outcome outcome = leeway(compare(options));
     CHECK(outcome.exit_code == 1);
@@ -92,13 +86,6 @@ TEST_CASE("compare refuses what it cannot do, and says what to do") {
       " --interval-s 100 --at 120");
   CHECK(too_short.exit_code == 1);
   CHECK(contains(too_short.err, "two GNSS intervals"));
-}
-
-TEST_CASE("compare: a file that cannot be written is no success" * doctest::test_suite("heavy")) {
-  const TempDir dir;
-  const Outcome outcome = leeway(compare("--csv " + quoted(dir / "none" / "v.csv")));
-  CHECK(outcome.exit_code == 3);
-  CHECK(contains(outcome.err, "cannot be written"));
 }
 
 }  // namespace leeway::test

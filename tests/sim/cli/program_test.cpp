@@ -12,7 +12,9 @@ namespace {
 
 TEST_CASE("help and version succeed, on standard output alone") {
   for (const char* arguments :
-       {"--help", "--version", "drift --help", "simulate --help", "fuse --help"}) {
+       {"--help", "--version", "analyze --help", "atlas --help", "campaign --help",
+        "compare --help", "drift --help", "fuse --help", "imu --help", "interval --help",
+        "reduce --help", "simulate --help"}) {
     CAPTURE(arguments);
     const Outcome outcome = leeway(arguments);
     CHECK(outcome.exit_code == 0);
