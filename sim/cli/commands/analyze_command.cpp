@@ -74,15 +74,15 @@ Eigen::Matrix3d total(const sim::ErrorBudget& error_budget) {
 }
 
 /// A row for each source and one for the total.
-std::string error_budget_csv(const sim::ErrorBudget& budget) {
-  const Eigen::Matrix3d sum = total(budget);
+std::string error_budget_csv(const sim::ErrorBudget& error_budget) {
+  const Eigen::Matrix3d sum = total(error_budget);
   std::string csv = "source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n";
   const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
     const Eigen::Vector3d sigma_m = P_n.diagonal().cwiseMax(0.0).cwiseSqrt();
     csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
                        horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
   };
-  for (const sim::BudgetLine& line : budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  for (const sim::BudgetLine& line : error_budget) add(sim::name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   return csv;
 }
@@ -108,11 +108,11 @@ void print_sigmas(const sim::CovariancePoint& worst) {
   table.print();
 }
 
-void print_sources(sim::ErrorBudget budget) {
-  std::sort(budget.begin(), budget.end(), [](const auto& a, const auto& b) {
+void print_sources(sim::ErrorBudget error_budget) {
+  std::sort(error_budget.begin(), error_budget.end(), [](const auto& a, const auto& b) {
     return horizontal_m2(a.mean_sq_n_m2) > horizontal_m2(b.mean_sq_n_m2);
   });
-  const Eigen::Matrix3d sum = total(budget);
+  const Eigen::Matrix3d sum = total(error_budget);
   Table table({"<source", "north, m", "east, m", "down, m", "horizontal, m", "share, %"});
   const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
     const double m2 = horizontal_m2(P_n);
@@ -122,7 +122,7 @@ void print_sources(sim::ErrorBudget budget) {
     cells.push_back(number(100.0 * m2 / horizontal_m2(sum), 2));
     table.add(std::move(cells));
   };
-  for (const sim::BudgetLine& line : budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  for (const sim::BudgetLine& line : error_budget) add(sim::name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   table.print();
 }
@@ -144,14 +144,14 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
 }
 
 Json results_json(const sim::CovarianceAnalysis& r) {
-  Json budget = Json::array();
+  Json error_budget = Json::array();
   const double sum_m2 = horizontal_m2(total(r.budget));
   for (const sim::BudgetLine& line : r.budget) {
-    budget.push_back({{"source", sim::name(line.source)},
-                      {"north_m2", line.mean_sq_n_m2(0, 0)},
-                      {"east_m2", line.mean_sq_n_m2(1, 1)},
-                      {"down_m2", line.mean_sq_n_m2(2, 2)},
-                      {"horizontal_share", horizontal_m2(line.mean_sq_n_m2) / sum_m2}});
+    error_budget.push_back({{"source", sim::name(line.source)},
+                            {"north_m2", line.mean_sq_n_m2(0, 0)},
+                            {"east_m2", line.mean_sq_n_m2(1, 1)},
+                            {"down_m2", line.mean_sq_n_m2(2, 2)},
+                            {"horizontal_share", horizontal_m2(line.mean_sq_n_m2) / sum_m2}});
   }
   return {{"true_m", r.true_m},
           {"claimed_m", r.claimed_m},
@@ -163,7 +163,7 @@ Json results_json(const sim::CovarianceAnalysis& r) {
           {"fixes", r.fixes},
           {"settled", r.settled},
           {"settled_s", r.settled ? Json(r.settled_s) : Json()},
-          {"budget", std::move(budget)}};
+          {"budget", std::move(error_budget)}};
 }
 
 /// Horizontal (root of the sum of both variances) and down.
