@@ -7,6 +7,7 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "leeway/sim/tools/ranks.hpp"
@@ -14,6 +15,7 @@
 #include "sim/cli/old_names.hpp"
 #include "sim/cli/output.hpp"
 #include "sim/cli/pages/report.hpp"
+#include "sim/tools/closest_name.hpp"
 
 namespace {
 
@@ -30,7 +32,11 @@ constexpr const char* kExitCodes =
 /// CLI11 would only say that a command is missing.
 void refuse_unknown_command(const std::vector<std::string>& words) {
   if (words.empty() || words[0].starts_with('-') || commands().contains(words[0])) return;
-  throw CLI::ParseError(fmt::format("unknown command '{}'", words[0]), CLI::ExitCodes::ExtrasError);
+  std::vector<std::string_view> names;
+  for (const auto& [name, add] : commands()) names.push_back(name);
+  const std::string meant = leeway::sim::did_you_mean(words[0], names);
+  throw CLI::ParseError(fmt::format("unknown command '{}': {}", words[0], meant),
+                        CLI::ExitCodes::ExtrasError);
 }
 
 int run(std::vector<std::string> words) {

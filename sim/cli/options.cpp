@@ -50,6 +50,14 @@ template CLI::Option* add_numbers<2>(CLI::App&, const std::string&, const std::s
 template CLI::Option* add_numbers<3>(CLI::App&, const std::string&, const std::string&,
                                      std::optional<Eigen::Vector3d>&, const std::string&);
 
+CLI::Validator positive() {
+  return {[](std::string& text) {
+            double value = 0.0;
+            return parse_numbers(text, &value, 1) && value > 0.0 ? "" : text + " is not above 0";
+          },
+          ""};
+}
+
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what) {
   app.add_option("--threads", threads, of_what + "0: all processors")
       ->check(CLI::Range(0, 1024))

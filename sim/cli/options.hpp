@@ -19,6 +19,9 @@ CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::stri
                          std::optional<Eigen::Matrix<double, N, 1>>& value,
                          const std::string& description);
 
+/// Refuses numbers that are not above zero.
+CLI::Validator positive();
+
 /// --threads. @param of_what  what runs on them
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what = "");
 

@@ -3,6 +3,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
+#include <limits>
+
 #include "leeway/earth/error.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
@@ -109,7 +111,7 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->check(CLI::IsMember(names_of(kHorizontalMetrics)));
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->type_name("M")
       ->delimiter(',');
   app.add_option("--at", choice.at_s,
@@ -124,7 +126,7 @@ void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::
   app.add_option("--trials", choice.trials, meaning)->check(CLI::Range(1, most));
   app.add_option("--first-seed", choice.first_seed,
                  "trial k has this seed + k; in place of the scene's")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::numeric_limits<std::uint64_t>::max()));
 }
 
 std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {

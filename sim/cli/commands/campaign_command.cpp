@@ -181,7 +181,7 @@ void add_options(CLI::App& app, CampaignChoice& options) {
       ->type_name("FILE");
   app.add_option("--score-last-s", c.score_last_s,
                  "score fixes this close to the scene's end, s (default: as the scene's limit)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   add_output_options(app, options.output);
 }
 
