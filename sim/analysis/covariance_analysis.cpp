@@ -122,8 +122,8 @@ class Analysis {
     window_.claimed_sum_m2 += claimed.trace();
     window_.true_sum_m2 += truth.trace();
     CovarianceAnalysis& r = window_.result;
-    r.claimed_m = std::max(r.claimed_m, horizontal_error_m(scene_.budget.metric, claimed));
-    const double true_m = horizontal_error_m(scene_.budget.metric, truth);
+    r.claimed_m = std::max(r.claimed_m, horizontal_error_m(scene_.limit.metric, claimed));
+    const double true_m = horizontal_error_m(scene_.limit.metric, truth);
     if (true_m <= r.true_m) return;
     r.true_m = true_m;
     r.worst_s = t_s;

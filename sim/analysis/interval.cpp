@@ -70,7 +70,7 @@ class Solver {
     double before_m = 0.0;
     free_inertial(scene_, track_, [&](const CovariancePoint& point) {
       const double error_m =
-          horizontal_error_m(scene_.budget.metric,
+          horizontal_error_m(scene_.limit.metric,
                              horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr)));
       if (config_.free_inertial_observer) config_.free_inertial_observer(point.t_s, error_m);
       bool wanted = false;

@@ -2,13 +2,20 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "leeway/sim/tools/ranks.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/old_names.hpp"
+#include "sim/cli/output.hpp"
 #include "sim/cli/pages/report.hpp"
+#include "sim/tools/closest_name.hpp"
 
 namespace {
 
@@ -23,33 +30,28 @@ constexpr const char* kExitCodes =
     "Each command explains itself: leeway fuse --help";
 
 /// CLI11 would only say that a command is missing.
-void refuse_unknown_command(const CLI::App& program, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  const auto named = [argv](const CLI::App* command) { return command->check_name(argv[1]); };
-  if (!program.get_subcommands(named).empty()) return;
-  throw CLI::ParseError(fmt::format("unknown command '{}'", argv[1]), CLI::ExitCodes::ExtrasError);
+void refuse_unknown_command(const std::vector<std::string>& words) {
+  if (words.empty() || words[0].starts_with('-') || commands().contains(words[0])) return;
+  std::vector<std::string_view> names;
+  for (const auto& [name, add] : commands()) names.push_back(name);
+  const std::string meant = leeway::sim::did_you_mean(words[0], names);
+  throw CLI::ParseError(fmt::format("unknown command '{}': {}", words[0], meant),
+                        CLI::ExitCodes::ExtrasError);
 }
 
-int run(int argc, char** argv) {
+int run(std::vector<std::string> words) {
   CLI::App program(kAbout, "leeway");
   program.set_version_flag("--version", "leeway " LEEWAY_VERSION);
   program.require_subcommand(1);
   program.footer(kExitCodes);
   int exit_code = kSuccess;
-  remember_command_line(argc, argv);
-  add_interval_command(program, exit_code);
-  add_analyze_command(program, exit_code);
-  add_budget_command(program, exit_code);
-  add_campaign_command(program, exit_code);
-  add_compare_command(program, exit_code);
-  add_atlas_command(program, exit_code);
-  add_drift_command(program, exit_code);
-  add_simulate_command(program, exit_code);
-  add_fuse_command(program, exit_code);
-  add_imu_command(program, exit_code);
+  for (const auto& [name, add] : commands()) add(program, exit_code);
+  words = with_new_names(std::move(words));
+  remember_command_line(words);
   try {
-    refuse_unknown_command(program, argc, argv);
-    program.parse(argc, argv);
+    refuse_unknown_command(words);
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    program.parse(words);
   } catch (const CLI::Success& help_or_version) {
     program.exit(help_or_version);
   } catch (const CLI::ParseError& error) {
@@ -71,7 +73,7 @@ int main(int argc, char** argv) {
     const auto log = spdlog::stderr_logger_st("leeway");
     log->set_pattern("leeway: %l: %v");
     spdlog::set_default_logger(log);
-    return run(argc, argv);
+    return run({argv + 1, argv + argc});
   } catch (const WriteFailure& error) {
     fmt::print(stderr, "leeway: {}\n", error.what());
     return kFailure;

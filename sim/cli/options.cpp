@@ -50,6 +50,26 @@ template CLI::Option* add_numbers<2>(CLI::App&, const std::string&, const std::s
 template CLI::Option* add_numbers<3>(CLI::App&, const std::string&, const std::string&,
                                      std::optional<Eigen::Vector3d>&, const std::string&);
 
+CLI::Validator positive() {
+  return {[](std::string& text) {
+            double value = 0.0;
+            return parse_numbers(text, &value, 1) && value > 0.0 ? "" : text + " is not above 0";
+          },
+          ""};
+}
+
+void add_threads_option(CLI::App& app, int& threads, const std::string& of_what) {
+  app.add_option("--threads", threads, of_what + "0: all processors")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+void add_repeat_option(CLI::App& app, int& repeat) {
+  app.add_option("--repeat", repeat, "timed runs of each")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
+
 CLI::Option* add_range_option(CLI::App& app, std::string& range) {
   std::vector<std::string> ends;
   for (const RangeEnd end : kRangeEnds) ends.emplace_back(name(end));
@@ -100,10 +120,6 @@ NamedImu imu_of(const ImuChoice& choice) {
   if (choice.name == kMems) return {choice.name, automotive_mems_model()};
   return {choice.name + "/" + choice.range,
           imu_class_model(imu_class_from_name(choice.name), range_end_from_name(choice.range))};
-}
-
-Json json_of(const std::optional<Eigen::Vector3d>& v) {
-  return v ? Json{v->x(), v->y(), v->z()} : Json();
 }
 
 }  // namespace leeway::cli

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "leeway/sensors/imu_error_model.hpp"
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 
@@ -19,6 +18,15 @@ template <int N>
 CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::string& meaning,
                          std::optional<Eigen::Matrix<double, N, 1>>& value,
                          const std::string& description);
+
+/// Refuses numbers that are not above zero.
+CLI::Validator positive();
+
+/// --threads. @param of_what  what runs on them
+void add_threads_option(CLI::App& app, int& threads, const std::string& of_what = "");
+
+/// --repeat, of commands that measure time.
+void add_repeat_option(CLI::App& app, int& repeat);
 
 /// Which IMU error model: a class with its range end, a part of the catalogue, or a file.
 struct ImuChoice {
@@ -44,8 +52,5 @@ struct NamedImu {
 
 /// @throws Error when the file is not a model or the part is not in the catalogue.
 NamedImu imu_of(const ImuChoice& choice);
-
-/// Three numbers, or null.
-Json json_of(const std::optional<Eigen::Vector3d>& v);
 
 }  // namespace leeway::cli

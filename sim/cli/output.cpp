@@ -4,13 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
 
-#include "sim/cli/commands.hpp"
+#include "leeway/sim/tools/ranks.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -71,35 +72,23 @@ void Table::print() const {
   for (const Row& row : rows_) print_line(row.cells, style_of(row.tone));
 }
 
-Json answer_json(std::string_view command, Json input, Json results) {
-  return {{"leeway", LEEWAY_VERSION},
-          {"command", command},
-          {"input", std::move(input)},
-          {"results", std::move(results)}};
-}
-
-std::string text_of(const Json& json, int indent) {
-  // Paths need not be UTF-8.
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-void print_json(const Json& answer) { fmt::print("{}\n", text_of(answer, 2)); }
-
-void print_json(std::string_view command, Json input, Json results) {
-  print_json(answer_json(command, std::move(input), std::move(results)));
-}
-
 void write_file(const std::filesystem::path& path, std::string_view content) {
   std::filesystem::path partial = path;
   partial += ".partial";
+  errno = 0;
   std::ofstream file(partial, std::ios::binary);
   file << content;
   file.close();
-  std::error_code error;
+  std::error_code error(file ? 0 : errno, std::generic_category());
   if (file) std::filesystem::rename(partial, path, error);
   if (file && !error) return;
-  std::filesystem::remove(partial, error);
-  throw WriteFailure(path.string() + ": cannot be written");
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);
+  throw WriteFailure(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
+}
+
+void note(std::string_view text) {
+  if (sim::Ranks::launched_first()) fmt::print(stderr, "leeway: note: {}\n", text);
 }
 
 Progress::Progress(std::string label)

@@ -1,19 +1,17 @@
 /// @file
-/// What the commands write: tables, the one JSON object, whole files, a progress bar.
+/// What the commands write: tables, whole files, notes, a progress bar.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace leeway::cli {
+#include "leeway/earth/error.hpp"
 
-/// Keys stay in the order they are added.
-using Json = nlohmann::ordered_json;
+namespace leeway::cli {
 
 /// A number with so many decimals, or "-" for what is not defined.
 std::string number(double value, int decimals);
@@ -43,18 +41,26 @@ class Table {
   std::vector<Row> rows_{};
 };
 
-/// What a command found, for programs: the contract of --json.
-Json answer_json(std::string_view command, Json input, Json results);
+/// A result could not be written.
+struct WriteFailure : Error {
+  using Error::Error;
+};
 
-/// Numbers that are not finite become null; what is not UTF-8 is replaced.
-std::string text_of(const Json& json, int indent = -1);
-
-/// Exactly this object on stdout.
-void print_json(const Json& answer);
-void print_json(std::string_view command, Json input, Json results);
+/// Runs what writes results. @throws WriteFailure in place of Error.
+template <class F>
+auto writing(F&& write) {
+  try {
+    return write();
+  } catch (const Error& error) {
+    throw WriteFailure(error.what());
+  }
+}
 
 /// Writes a file as a whole or not at all. @throws WriteFailure
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// A line on stderr, once where several ranks run.
+void note(std::string_view text);
 
 /// A bar on stderr, where that is a terminal, once the work has taken a second, with the time to
 /// go. Gone afterwards.
@@ -69,6 +75,7 @@ class Progress {
   bool visible() const { return is_terminal_; }
   /// @param remaining_s  the time to go; absent: as long as what is done took
   void show(double fraction, std::optional<double> remaining_s = {});
+  void operator()(double fraction) { show(fraction); }
 
  private:
   using Clock = std::chrono::steady_clock;

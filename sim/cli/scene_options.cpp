@@ -3,12 +3,15 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
+#include <limits>
+
 #include "leeway/earth/error.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
 #include "leeway/sim/scene/scene_file.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -47,13 +50,15 @@ sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, const std::string& bi
 }
 
 sim::Scene changed_scene(const SceneChoice& choice) {
-  sim::Scene scene = sim::read_scene(choice.file, choice.at_s);
+  sim::Scene scene = scene_from_file(choice.file, choice.at_s);
   if (!choice.metric.empty()) {
-    scene.budget.metric = horizontal_metric_from_name(choice.metric);
+    scene.limit.metric = horizontal_metric_from_name(choice.metric);
   }
   if (!choice.filter.empty()) sim::read_filter_file(choice.filter, scene);
-  if (!choice.limits_m.empty()) scene.budget.limit_m = choice.limits_m.front();
+  if (!choice.limits_m.empty()) scene.limit.limit_m = choice.limits_m.front();
   if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
+  if (choice.trials) scene.trials = *choice.trials;
+  if (choice.first_seed) scene.first_seed = *choice.first_seed;
   return scene;
 }
 
@@ -77,6 +82,13 @@ Json gnss_json(const sim::GnssScenario& gnss) {
 
 }  // namespace
 
+sim::Scene scene_from_file(const std::filesystem::path& file, std::optional<double> duration_s) {
+  std::vector<std::string> notes;
+  sim::Scene scene = sim::read_scene(file, duration_s, &notes);
+  for (const std::string& text : notes) note(text);
+  return scene;
+}
+
 void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)")
       ->type_name("FILE.toml")
@@ -93,13 +105,13 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
                  "correlation time of an hour")
       ->check(CLI::IsMember(names_of(sim::kBiasModels)));
   app.add_option("--filter", choice.filter,
-                 "how the filter runs, in place of the scene's [filter]: a file that leeway budget "
+                 "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
                  "--write made")
       ->type_name("FILE.toml");
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->check(CLI::IsMember(names_of(kHorizontalMetrics)));
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->type_name("M")
       ->delimiter(',');
   app.add_option("--at", choice.at_s,
@@ -108,6 +120,13 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
       ->type_name("SECONDS");
   app.add_option("--interval-s", choice.interval_s, "time between fixes, s")
       ->check(CLI::Range(1e-3, 1e6));
+}
+
+void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::string& meaning) {
+  app.add_option("--trials", choice.trials, meaning)->check(CLI::Range(1, most));
+  app.add_option("--first-seed", choice.first_seed,
+                 "trial k has this seed + k; in place of the scene's")
+      ->check(CLI::Range(std::numeric_limits<std::uint64_t>::max()));
 }
 
 std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
@@ -141,11 +160,18 @@ Json scene_json(const sim::Scene& scene) {
           {"bias_model", name(sim::bias_model_of(scene.imu))},
           {"gnss", gnss_json(scene.gnss)},
           {"gate_probability", scene.filter.gate_probability},
-          {"metric", name(scene.budget.metric)},
-          {"limit_m", scene.budget.limit_m},
-          {"last_s", scene.budget.last_s},
+          {"metric", name(scene.limit.metric)},
+          {"limit_m", scene.limit.limit_m},
+          {"last_s", scene.limit.last_s},
           {"trials", scene.trials},
           {"first_seed", scene.first_seed}};
+}
+
+Json timed_input_json(const sim::Scene& scene, int repeat) {
+  Json input = scene_json(scene);
+  input.erase("gate_probability");
+  input["repeat"] = repeat;
+  return input;
 }
 
 }  // namespace leeway::cli

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "leeway/sim/scene/scene.hpp"
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 
@@ -23,10 +23,20 @@ struct SceneChoice {
   std::filesystem::path filter{};   ///< how the filter runs; empty: as the scene has it
   std::optional<double> at_s{};
   std::optional<double> interval_s{};
+  std::optional<int> trials{};
+  std::optional<std::uint64_t> first_seed{};
 };
+
+/// As sim::read_scene, with a note on stderr for each old name that the file uses.
+sim::Scene scene_from_file(const std::filesystem::path& file,
+                           std::optional<double> duration_s = {});
 
 /// --scene, required, and the options that change it.
 void add_scene_options(CLI::App& app, SceneChoice& choice);
+
+/// --trials and --first-seed, of commands that draw errors.
+/// @param meaning  of a number of trials
+void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::string& meaning);
 
 /// The scene with the changes, one for each IMU asked for. An IMU from the command line is also
 /// what the filter believes; of several limits a scene has the first.
@@ -39,5 +49,8 @@ sim::Scene scene_of(const SceneChoice& choice);
 
 /// What the scene is, for the input of --json.
 Json scene_json(const sim::Scene& scene);
+
+/// The same for studies that run without a gate and measure time, so many times.
+Json timed_input_json(const sim::Scene& scene, int repeat);
 
 }  // namespace leeway::cli

@@ -155,7 +155,7 @@ class Budgeting {
     const MeasuredAccuracy& full = result_.full.measured;
     const MeasuredAccuracy& reduced = result_.reduced.measured;
     result_.keeps_limit =
-        reduced.figures.not_finite == 0 && reduced.error_m <= result_.scene.budget.limit_m;
+        reduced.figures.not_finite == 0 && reduced.error_m <= result_.scene.limit.limit_m;
     result_.is_as_honest = is_as_honest(reduced.figures.rms_over_sigma, reduced.figures.mean_nees,
                                         full.figures.rms_over_sigma, full.figures.mean_nees);
   }

@@ -63,7 +63,7 @@ ModelCosts model_costs(const TrialPlan& plan, const std::vector<FilterModel>& mo
 /// The scene with these errors of its sensors taken away, and every other random number the same.
 Scene without_sources(Scene scene, const std::vector<ErrorSource>& sources);
 
-/// The terms of the cheapest model found that keeps scene.budget and the honesty of the full one,
+/// The terms of the cheapest model found that keeps scene.limit and the honesty of the full one,
 /// by prediction.
 std::vector<ModelTerm> cheapest_terms(const TrialPlan& plan, const TermPrediction& prediction,
                                       const FilterModel& full, const std::vector<TermWorth>& terms,

@@ -52,7 +52,7 @@ class Choice {
   }
 
   bool is_admissible(const PredictedAccuracy& p) const {
-    return p.is_finite && p.error_m <= kUsableLimit * plan_.scene().budget.limit_m &&
+    return p.is_finite && p.error_m <= kUsableLimit * plan_.scene().limit.limit_m &&
            is_as_honest(p.rms_over_sigma, p.nees, full_accuracy_.rms_over_sigma,
                         full_accuracy_.nees);
   }

@@ -138,7 +138,7 @@ PredictedAccuracy TermPrediction::of(const FilterModel& model) const {
   track_->run(model, pass,
               [&sums](const Pair& pair, const LinearFilterRun::Epoch& epoch,
                       const Eigen::Vector3d& r_e_m) { sums.add(pair, epoch, r_e_m); });
-  return sums.result(track_->path.plan.scene().budget.metric);
+  return sums.result(track_->path.plan.scene().limit.metric);
 }
 
 double TermPrediction::contribution_m(const std::vector<ErrorSource>& sources) const {

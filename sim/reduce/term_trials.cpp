@@ -75,7 +75,7 @@ FilterCase case_of(const TrialPlan& plan, const FilterModel& model) {
 
 std::vector<MeasuredAccuracy> measured(const std::vector<FilterCase>& cases, int threads,
                                        const std::function<void(double)>& progress) {
-  const HorizontalMetric metric = cases.front().plan->scene().budget.metric;
+  const HorizontalMetric metric = cases.front().plan->scene().limit.metric;
   const auto runs = run_cases(cases, threads, progress);
   std::vector<MeasuredAccuracy> result;
   for (const auto& of_case : runs) {

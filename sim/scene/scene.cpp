@@ -52,10 +52,10 @@ void validate(const Scene& scene) {
           "gnss outlier_probability", scene.gnss.outlier_probability, "0 to 0.5");
   require(scene.gnss.outlier_sigma_m >= 0.0 && scene.gnss.outlier_sigma_m <= 1e6,
           "gnss outlier_sigma_m", scene.gnss.outlier_sigma_m, "0 to 1e6");
-  require(scene.budget.limit_m > 0.0 && scene.budget.limit_m <= 1e6, "budget limit_m",
-          scene.budget.limit_m, "> 0 and at most 1e6");
-  require(scene.budget.last_s > 0.0 && scene.budget.last_s <= 1e6, "budget last_s",
-          scene.budget.last_s, "> 0 and at most 1e6");
+  require(scene.limit.limit_m > 0.0 && scene.limit.limit_m <= 1e6, "limit limit_m",
+          scene.limit.limit_m, "> 0 and at most 1e6");
+  require(scene.limit.last_s > 0.0 && scene.limit.last_s <= 1e6, "limit last_s", scene.limit.last_s,
+          "> 0 and at most 1e6");
   require(scene.imu_divider >= 1 && scene.imu_divider <= 1000, "imu_divider", scene.imu_divider,
           "1 to 1000");
   require(scene.trials >= 1, "trials", scene.trials, ">= 1");
@@ -83,7 +83,7 @@ InitialSigma initial_sigma(const Scene& scene) {
 
 double scored_part_s(const Scene& scene) {
   return std::max(
-      {scene.budget.last_s, 2.0 * scene.gnss.interval_s, scene.trajectory.period_s.value_or(0.0)});
+      {scene.limit.last_s, 2.0 * scene.gnss.interval_s, scene.trajectory.period_s.value_or(0.0)});
 }
 
 std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s) {

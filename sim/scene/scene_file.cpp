@@ -50,9 +50,12 @@ class SceneReader {
                     [this](TomlSection& imu) { scene_.filter.imu = read_imu(imu, folder_).model; });
     });
     root.table("initial", [this](TomlSection& section) { scene_.initial = read_initial(section); });
-    root.table("budget", [this](TomlSection& section) { scene_.budget = read_budget(section); });
+    read_limit_section(root);
     return scene_;
   }
+
+  /// Old names that the file uses.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   static void require(TomlSection& root, std::string_view name, const TomlSection::Reader& read) {
@@ -70,6 +73,19 @@ class SceneReader {
     scene_.first_seed =
         static_cast<std::uint64_t>(section.integer("first_seed", 0, kLargest)
                                        .value_or(static_cast<std::int64_t>(scene_.first_seed)));
+  }
+
+  /// Files of Leeway 0.1 call it [budget].
+  void read_limit_section(TomlSection& root) {
+    const auto read = [this](TomlSection& section) { scene_.limit = read_limit(section); };
+    if (!root.has("budget")) {
+      root.table("limit", read);
+      return;
+    }
+    if (root.has("limit"))
+      root.fail_at("budget", "is the old name of [limit], also there: keep one");
+    root.table("budget", read);
+    notes_.emplace_back("[budget] is now called [limit]");
   }
 
   void require_step(const TomlSection& section) const {
@@ -92,10 +108,11 @@ class SceneReader {
   std::optional<double> wanted_duration_s_;
   std::optional<double> duration_s_;
   Scene scene_{};
+  std::vector<std::string> notes_{};
 };
 
 Scene read(const TomlDocument& document, const std::filesystem::path& path,
-           std::optional<double> duration_s) {
+           std::optional<double> duration_s, std::vector<std::string>* notes) {
   if (duration_s && !kDuration.limits.contain(*duration_s)) {
     throw Error(
         fmt::format("the duration of a scene is {:.9g} s, must be 1 to 1e6 s", *duration_s));
@@ -104,6 +121,9 @@ Scene read(const TomlDocument& document, const std::filesystem::path& path,
   Scene scene;
   document.read([&](TomlSection& root) { scene = reader.read(root); });
   validate(scene);
+  if (notes != nullptr) {
+    for (const std::string& note : reader.notes()) notes->push_back(path.string() + ": " + note);
+  }
   return scene;
 }
 
@@ -118,15 +138,16 @@ void require_text_file(const std::filesystem::path& path) {
   }
 }
 
-Scene read_scene(const std::filesystem::path& path, std::optional<double> duration_s) {
+Scene read_scene(const std::filesystem::path& path, std::optional<double> duration_s,
+                 std::vector<std::string>* notes) {
   require_text_file(path);
-  return read(TomlDocument::from_file(path), path, duration_s);
+  return read(TomlDocument::from_file(path), path, duration_s, notes);
 }
 
-Scene parse_scene(std::string_view text, const std::string& name,
-                  std::optional<double> duration_s) {
+Scene parse_scene(std::string_view text, const std::string& name, std::optional<double> duration_s,
+                  std::vector<std::string>* notes) {
   if (text.size() > kLongestSceneFile) throw Error(name + ": longer than a scene file can be");
-  return read(TomlDocument::from_text(text, name), name, duration_s);
+  return read(TomlDocument::from_text(text, name), name, duration_s, notes);
 }
 
 }  // namespace leeway::sim

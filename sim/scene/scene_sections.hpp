@@ -40,7 +40,7 @@ void read_filter(TomlSection& section, Scene& scene);
 /// [initial]: every key is required.
 InitialSigma read_initial(TomlSection& section);
 
-/// [budget].
-HorizontalBudget read_budget(TomlSection& section);
+/// [limit].
+ErrorLimit read_limit(TomlSection& section);
 
 }  // namespace leeway::sim

@@ -212,12 +212,12 @@ InitialSigma read_initial(TomlSection& section) {
   return sigma;
 }
 
-HorizontalBudget read_budget(TomlSection& section) {
-  HorizontalBudget budget;
-  budget.metric = chosen(section, "metric", kHorizontalMetrics).value_or(budget.metric);
-  set(section, kLimit, budget.limit_m);
-  set(section, kLast, budget.last_s);
-  return budget;
+ErrorLimit read_limit(TomlSection& section) {
+  ErrorLimit limit;
+  limit.metric = chosen(section, "metric", kHorizontalMetrics).value_or(limit.metric);
+  set(section, kLimit, limit.limit_m);
+  set(section, kLast, limit.last_s);
+  return limit;
 }
 
 }  // namespace leeway::sim

@@ -13,7 +13,7 @@ namespace leeway::sim {
 std::uint64_t hash_of(std::string_view bytes);
 
 /// Of everything that decides what a trial with a given seed gives, this version of Leeway
-/// included: true increments, sensors, receiver, fixes, filter, start. Not of names, budget, number
+/// included: true increments, sensors, receiver, fixes, filter, start. Not of names, limit, number
 /// of trials or first seed. The motion enters by the values it takes, so a mathematical library
 /// that rounds otherwise makes another scene.
 std::uint64_t fingerprint(const TrialPlan& plan);

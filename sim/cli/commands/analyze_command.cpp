@@ -1,31 +1,92 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/logs/csv_writer.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
-#include "sim/cli/commands.hpp"
-#include "sim/cli/commands/analysis_files.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/report.hpp"
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
 
-struct AnalyzeOptions {
+struct AnalyzeChoice {
   SceneChoice scene{};
   std::filesystem::path moments{};
-  std::filesystem::path budget{};
-  std::filesystem::path report{};
-  bool json{false};
+  std::filesystem::path error_budget{};
+  Output output{};
 };
+
+/// Of a 3 x 3 block of an error's covariance, in north, east, down.
+Eigen::Vector3d sigma_n(const sim::CovariancePoint& point, const ErrorMatrix& P, int block) {
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(point.r_e_m)).transpose();
+  return (C_ne * P.block<3, 3>(block, block) * C_ne.transpose())
+      .diagonal()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
+}
+
+std::vector<CsvColumn> moment_columns() {
+  constexpr int kExact = CsvColumn::kSingle;
+  std::vector<CsvColumn> columns{{"t_s"}, {"moment", 0}};
+  using Axes = std::array<std::string, 3>;
+  for (const Axes& axes : {Axes{"n_m", "e_m", "d_m"}, Axes{"vn_mps", "ve_mps", "vd_mps"},
+                           Axes{"tilt_n_rad", "tilt_e_rad", "heading_rad"}}) {
+    for (const std::string whose : {"claimed_", "true_"}) {
+      for (const std::string& axis : axes) columns.emplace_back((whose + axis).c_str(), kExact);
+    }
+  }
+  columns.emplace_back("optimistic_by", kExact);
+  return columns;
+}
+
+/// Claimed and true sigmas. The column moment: 0 on the way, 1 before a fix is used, 2 after.
+void write_moment(CsvWriter& csv, const sim::CovariancePoint& point) {
+  std::vector<double> row{static_cast<double>(point.moment)};
+  for (const int block : {kDr, kDv, kPsi}) {
+    for (const ErrorMatrix* P : {&point.claimed, &point.truth}) {
+      const Eigen::Vector3d sigma = sigma_n(point, *P, block);
+      row.insert(row.end(), sigma.begin(), sigma.end());
+    }
+  }
+  row.push_back(std::hypot(row[4], row[5]) / std::hypot(row[1], row[2]));
+  csv.write(time_from_seconds(point.t_s), row);
+}
+
+/// Sum over north and east.
+double horizontal_m2(const Eigen::Matrix3d& mean_sq_n_m2) {
+  return mean_sq_n_m2.topLeftCorner<2, 2>().trace();
+}
+
+/// Of all sources.
+Eigen::Matrix3d total(const sim::ErrorBudget& error_budget) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const sim::BudgetLine& line : error_budget) sum += line.mean_sq_n_m2;
+  return sum;
+}
+
+/// A row for each source and one for the total.
+std::string error_budget_csv(const sim::ErrorBudget& error_budget) {
+  const Eigen::Matrix3d sum = total(error_budget);
+  std::string csv = "source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n";
+  const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
+    const Eigen::Vector3d sigma_m = P_n.diagonal().cwiseMax(0.0).cwiseSqrt();
+    csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
+                       horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
+  };
+  for (const sim::BudgetLine& line : error_budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  add("total", sum);
+  return csv;
+}
 
 std::string optimism(double ratio) {
   if (std::abs(ratio - 1.0) < 5e-3) return "as honest as it can be";
@@ -34,13 +95,10 @@ std::string optimism(double ratio) {
 }
 
 void print_sigmas(const sim::CovariancePoint& worst) {
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(worst.r_e_m)).transpose();
   Table table({"<1 sigma", "north", "east", "down"});
   const auto add = [&](const char* what, const ErrorMatrix& P, int block, double unit) {
-    const Eigen::Matrix3d P_n = C_ne * P.block<3, 3>(block, block) * C_ne.transpose();
-    std::vector<std::string> cells{what};
-    for (int i = 0; i < 3; ++i) cells.push_back(number(std::sqrt(P_n(i, i)) / unit, 4));
-    table.add(std::move(cells));
+    const Eigen::Vector3d sigma = sigma_n(worst, P, block) / unit;
+    table.add({what, number(sigma.x(), 4), number(sigma.y(), 4), number(sigma.z(), 4)});
   };
   add("position claimed, m", worst.claimed, kDr, 1.0);
   add("position true, m", worst.truth, kDr, 1.0);
@@ -51,11 +109,11 @@ void print_sigmas(const sim::CovariancePoint& worst) {
   table.print();
 }
 
-void print_sources(sim::ErrorBudget budget) {
-  std::sort(budget.begin(), budget.end(), [](const auto& a, const auto& b) {
+void print_sources(sim::ErrorBudget error_budget) {
+  std::sort(error_budget.begin(), error_budget.end(), [](const auto& a, const auto& b) {
     return horizontal_m2(a.mean_sq_n_m2) > horizontal_m2(b.mean_sq_n_m2);
   });
-  const Eigen::Matrix3d sum = total(budget);
+  const Eigen::Matrix3d sum = total(error_budget);
   Table table({"<source", "north, m", "east, m", "down, m", "horizontal, m", "share, %"});
   const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
     const double m2 = horizontal_m2(P_n);
@@ -65,16 +123,16 @@ void print_sources(sim::ErrorBudget budget) {
     cells.push_back(number(100.0 * m2 / horizontal_m2(sum), 2));
     table.add(std::move(cells));
   };
-  for (const sim::BudgetLine& line : budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  for (const sim::BudgetLine& line : error_budget) add(sim::name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   table.print();
 }
 
-void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
+void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
              scene.imu_name, scene.gnss.interval_s, scene.duration_s);
   fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
-             leeway::name(scene.budget.metric), r.window_s, r.true_m, r.worst_s);
+             leeway::name(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
   fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
   if (r.settled) {
     fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);
@@ -87,14 +145,14 @@ void print_report(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
 }
 
 Json results_json(const sim::CovarianceAnalysis& r) {
-  Json budget = Json::array();
+  Json error_budget = Json::array();
   const double sum_m2 = horizontal_m2(total(r.budget));
   for (const sim::BudgetLine& line : r.budget) {
-    budget.push_back({{"source", sim::name(line.source)},
-                      {"north_m2", line.mean_sq_n_m2(0, 0)},
-                      {"east_m2", line.mean_sq_n_m2(1, 1)},
-                      {"down_m2", line.mean_sq_n_m2(2, 2)},
-                      {"horizontal_share", horizontal_m2(line.mean_sq_n_m2) / sum_m2}});
+    error_budget.push_back({{"source", sim::name(line.source)},
+                            {"north_m2", line.mean_sq_n_m2(0, 0)},
+                            {"east_m2", line.mean_sq_n_m2(1, 1)},
+                            {"down_m2", line.mean_sq_n_m2(2, 2)},
+                            {"horizontal_share", horizontal_m2(line.mean_sq_n_m2) / sum_m2}});
   }
   return {{"true_m", r.true_m},
           {"claimed_m", r.claimed_m},
@@ -106,69 +164,64 @@ Json results_json(const sim::CovarianceAnalysis& r) {
           {"fixes", r.fixes},
           {"settled", r.settled},
           {"settled_s", r.settled ? Json(r.settled_s) : Json()},
-          {"budget", std::move(budget)}};
+          {"budget", std::move(error_budget)}};
 }
 
 /// Horizontal (root of the sum of both variances) and down.
-void add_moment(ReportTable& table, const sim::CovariancePoint& point) {
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(point.r_e_m)).transpose();
-  const auto variances = [&C_ne](const ErrorMatrix& P) -> Eigen::Vector3d {
-    return (C_ne * P.block<3, 3>(kDr, kDr) * C_ne.transpose()).diagonal();
-  };
-  const Eigen::Vector3d claimed_m2 = variances(point.claimed);
-  const Eigen::Vector3d true_m2 = variances(point.truth);
-  const auto horizontal_m = [](const Eigen::Vector3d& m2) { return std::sqrt(m2.x() + m2.y()); };
-  table.add({point.t_s, horizontal_m(claimed_m2), horizontal_m(true_m2), std::sqrt(claimed_m2.z()),
-             std::sqrt(true_m2.z())});
+void add_moment(SeriesTable& table, const sim::CovariancePoint& point) {
+  const Eigen::Vector3d claimed_m = sigma_n(point, point.claimed, kDr);
+  const Eigen::Vector3d true_m = sigma_n(point, point.truth, kDr);
+  table.add({point.t_s, std::hypot(claimed_m.x(), claimed_m.y()),
+             std::hypot(true_m.x(), true_m.y()), claimed_m.z(), true_m.z()});
 }
 
-int run(const AnalyzeOptions& options) {
+int run(const AnalyzeChoice& options) {
   const sim::Scene scene = scene_of(options.scene);
-  std::optional<MomentWriter> moments;
-  if (!options.moments.empty()) writing([&] { moments.emplace(options.moments); });
+  std::optional<CsvWriter> moments;
+  if (!options.moments.empty())
+    writing([&] { moments.emplace(options.moments, moment_columns()); });
   Progress progress("analyze");
   sim::CovarianceConfig config;
   config.by_source = true;
-  ReportTable shown({"t_s", "claimed_h_m", "true_h_m", "claimed_d_m", "true_d_m"});
-  const bool reported = !options.report.empty();
+  SeriesTable shown({"t_s", "claimed_h_m", "true_h_m", "claimed_d_m", "true_d_m"});
+  const bool reported = !options.output.report.empty();
   if (moments || reported || progress.visible()) {
     config.observer = [&](const sim::CovariancePoint& point) {
-      if (moments) writing([&] { moments->write(point); });
+      if (moments) writing([&] { write_moment(*moments, point); });
       if (reported) add_moment(shown, point);
       progress.show(point.t_s / scene.duration_s);
     };
   }
   const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
   if (moments) writing([&] { moments->close(); });
-  if (!options.budget.empty()) write_file(options.budget, budget_csv(result.budget));
-  const Json answer = answer_json("analyze", scene_json(scene), results_json(result));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_report(scene, result);
+  if (!options.error_budget.empty()) {
+    write_file(options.error_budget, error_budget_csv(result.budget));
   }
-  write_report(options.report, answer, {{"moments", shown.json()}});
+  show(
+      options.output, answer_json("analyze", scene_json(scene), results_json(result)),
+      [&] { print_tables(scene, result); },
+      [&] {
+        return Json{{"moments", shown.json()}};
+      });
   return kSuccess;
 }
 
-}  // namespace
-
-void add_analyze_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "analyze", "What the filter claims in a scene, what is true, and where the error comes from");
-  const auto options = std::make_shared<AnalyzeOptions>();
-  add_scene_options(*app, options->scene);
-  app->add_option("--out", options->moments,
-                  "write claimed and true sigmas at every moment of the scene as CSV")
+void add_options(CLI::App& app, AnalyzeChoice& options) {
+  add_scene_options(app, options.scene);
+  app.add_option("--out", options.moments,
+                 "write claimed and true sigmas at every moment of the scene as CSV")
       ->type_name("FILE");
-  app->add_option("--budget", options->budget, "write the error budget as CSV")->type_name("FILE");
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Example:\n"
-      "  leeway analyze --scene docs/examples/scenes/town-car.toml --interval-s 5 --budget "
-      "budget.csv");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  app.add_option("--error-budget", options.error_budget, "write the error budget as CSV")
+      ->type_name("FILE");
+  add_output_options(app, options.output);
 }
 
+const Command kAnalyze{
+    "analyze", "What the filter claims in a scene, what is true, and where the error comes from",
+    "Example:\n"
+    "  leeway analyze --scene docs/examples/scenes/town-car.toml --interval-s 5 --error-budget "
+    "budget.csv",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

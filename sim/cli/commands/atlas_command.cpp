@@ -1,39 +1,38 @@
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/atlas/atlas_expected.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/atlas_report.hpp"
-#include "sim/cli/pages/report.hpp"
+#include "sim/cli/tables/atlas_tables.hpp"
 
 namespace leeway::cli {
 namespace {
 
-struct AtlasCommand {
+struct AtlasChoice {
   std::vector<std::string> scenes{};
   bool list{false};
   sim::AtlasOptions atlas{};
   int threads{0};
-  bool json{false};
   std::filesystem::path csv{};
   std::filesystem::path markdown{};
   std::filesystem::path expected{};
-  std::filesystem::path report{};
+  Output output{};
 };
 
-std::vector<sim::AtlasResult> run_scenes(const AtlasCommand& options,
+std::vector<sim::AtlasResult> run_scenes(const AtlasChoice& options,
                                          const sim::AtlasOptions& atlas) {
   Progress progress("atlas");
   return sim::run_atlas(sim::atlas_scenes(options.scenes), atlas, options.threads,
-                        [&progress](double fraction) { progress.show(fraction); });
+                        std::ref(progress));
 }
 
 /// Both forms anew: what later runs are compared with, after the next build.
-int write_expected(const AtlasCommand& options) {
+int write_expected(const AtlasChoice& options) {
   std::string csv;
   for (const bool brief : {false, true}) {
     const sim::AtlasOptions atlas{.brief = brief};
@@ -43,7 +42,7 @@ int write_expected(const AtlasCommand& options) {
   return kSuccess;
 }
 
-int run(const AtlasCommand& options) {
+int run(const AtlasChoice& options) {
   if (options.list) {
     print_atlas_list();
     return kSuccess;
@@ -54,51 +53,42 @@ int run(const AtlasCommand& options) {
   const Json answer =
       answer_json("atlas", {{"scenes", options.scenes}, {"short", options.atlas.brief}},
                   atlas_json(results, surprises));
-  if (options.json) {
-    print_json(answer);
-  } else {
+  show(options.output, answer, [&] {
     print_atlas(results);
     print_atlas_findings(results, surprises);
-  }
+  });
   if (!options.csv.empty()) write_file(options.csv, sim::atlas_csv(results, options.atlas));
   if (!options.markdown.empty()) write_file(options.markdown, atlas_markdown(results));
-  write_report(options.report, answer);
   return surprises.empty() && !any_silent(results) ? kSuccess : kNoAnswer;
 }
 
-}  // namespace
-
-void add_atlas_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "atlas", "Scenes in which methods break, run against every variant, with expected verdicts");
-  const auto options = std::make_shared<AtlasCommand>();
+void add_options(CLI::App& app, AtlasChoice& options) {
   CLI::Option* scene =
-      app->add_option("--scene", options->scenes, "only these scenes; --list names all")
+      app.add_option("--scene", options.scenes, "only these scenes; --list names all")
           ->type_name("KEY")
           ->delimiter(',');
-  app->add_flag("--list", options->list, "name the scenes and run nothing");
+  app.add_flag("--list", options.list, "name the scenes and run nothing");
   CLI::Option* brief =
-      app->add_flag("--short", options->atlas.brief, "fewer trials and shorter drives, for tests");
-  app->add_option("--threads", options->threads, "0: all processors")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  add_report_option(*app, options->report);
-  app->add_option("--csv", options->csv, "write a row for each cell as CSV")->type_name("FILE");
-  app->add_option("--markdown", options->markdown,
-                  "write matrix and cells as docs/atlas.md has them")
+      app.add_flag("--short", options.atlas.brief, "fewer trials and shorter drives, for tests");
+  add_threads_option(app, options.threads);
+  add_output_options(app, options.output);
+  app.add_option("--csv", options.csv, "write a row for each cell as CSV")->type_name("FILE");
+  app.add_option("--markdown", options.markdown, "write matrix and cells as docs/atlas.md has them")
       ->type_name("FILE");
-  app->add_option("--write-expected", options->expected,
-                  "run both forms of all scenes and write what is found: sim/atlas/expected.csv")
+  app.add_option("--write-expected", options.expected,
+                 "run both forms of all scenes and write what is found: sim/atlas/expected.csv")
       ->type_name("FILE")
       ->excludes(scene)
       ->excludes(brief);
-  app->footer(
-      "Exits with 2 when a cell is not as expected, or a variant of the library fails and no\n"
-      "detector says so.\n"
-      "Example:\n"
-      "  leeway atlas --scene parked-rtk,wrong-heading --csv cells.csv");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
+const Command kAtlas{
+    "atlas", "Scenes in which methods break, run against every variant, with expected verdicts",
+    "Exits with 2 when a cell is not as expected, or a variant of the library fails and no\n"
+    "detector says so.\n"
+    "Example:\n"
+    "  leeway atlas --scene parked-rtk,wrong-heading --csv cells.csv",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

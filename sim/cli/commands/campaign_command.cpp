@@ -2,37 +2,27 @@
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
 #include <string>
 #include <thread>
 
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/trials/campaign.hpp"
 #include "leeway/sim/trials/trial_journal.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
 #include "sim/cli/pages/campaign_fan.hpp"
-#include "sim/cli/pages/report.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
 
-struct CommandOptions {
+struct CampaignChoice {
   SceneChoice scene{};
-  std::optional<int> trials{};
-  std::optional<std::uint64_t> first_seed{};
   sim::CampaignOptions campaign{};
-  std::filesystem::path report{};
-  bool json{false};
+  Output output{};
 };
-
-sim::Scene chosen_scene(const CommandOptions& options) {
-  sim::Scene scene = scene_of(options.scene);
-  if (options.trials) scene.trials = *options.trials;
-  if (options.first_seed) scene.first_seed = *options.first_seed;
-  return scene;
-}
 
 Json results_json(const sim::CampaignResult& r) {
   return {{"trials", r.trials},
@@ -91,7 +81,7 @@ void print_consistency(const sim::Scene& scene, const sim::CampaignResult& r) {
       "the larger for it.\n");
 }
 
-void print_report(const sim::Scene& scene, const sim::CampaignResult& r) {
+void print_tables(const sim::Scene& scene, const sim::CampaignResult& r) {
   fmt::print("Scene '{}': {} s, IMU {} at {} Hz, fixes every {} s\n", scene.name, scene.duration_s,
              scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s);
   fmt::print("{} trials, seeds {} to {}, {} scored epochs\n\n", r.trials, scene.first_seed,
@@ -118,15 +108,15 @@ void print_speed(const sim::Scene& scene, const sim::CampaignResult& r, int core
       cores);
 }
 
-int cores_of(const CommandOptions& options, const sim::Ranks& ranks) {
+int cores_of(const CampaignChoice& options, const sim::Ranks& ranks) {
   if (options.campaign.threads > 0) return ranks.count() * options.campaign.threads;
   if (ranks.count() > 1) return ranks.count();
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-int run_on(const CommandOptions& options, const sim::Ranks& ranks) {
+int run_on(const CampaignChoice& options, const sim::Ranks& ranks) {
   using Clock = std::chrono::steady_clock;
-  const sim::Scene scene = chosen_scene(options);
+  const sim::Scene scene = scene_of(options.scene);
   const auto start = Clock::now();
   const sim::CampaignResult result = [&] {
     sim::CampaignOptions shown = options.campaign;
@@ -140,17 +130,13 @@ int run_on(const CommandOptions& options, const sim::Ranks& ranks) {
   if (!ranks.is_first()) return kSuccess;
   Json input = scene_json(scene);
   if (options.campaign.score_last_s) input["score_last_s"] = *options.campaign.score_last_s;
-  const Json answer = answer_json("campaign", std::move(input), results_json(result));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_report(scene, result);
+  const auto print = [&] {
+    print_tables(scene, result);
     print_speed(scene, result, cores_of(options, ranks),
                 std::chrono::duration<double>(Clock::now() - start).count());
-  }
-  if (!options.report.empty()) {
-    write_report(options.report, answer, campaign_fan(scene, options.campaign.threads));
-  }
+  };
+  show(options.output, answer_json("campaign", std::move(input), results_json(result)), print,
+       [&] { return campaign_fan(scene, options.campaign.threads); });
   return result.epochs > 0 ? kSuccess : kNoAnswer;
 }
 
@@ -163,7 +149,7 @@ int run_on(const CommandOptions& options, const sim::Ranks& ranks) {
   ranks.stop(message, exit_code);
 }
 
-int run(const CommandOptions& options) {
+int run(const CampaignChoice& options) {
   const sim::Ranks ranks;
   const auto give_up = [&ranks](const std::exception& error, int exit_code) {
     if (ranks.count() > 1) stop(ranks, error.what(), exit_code);
@@ -185,36 +171,27 @@ int run(const CommandOptions& options) {
   }
 }
 
-}  // namespace
-
-void add_campaign_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "campaign", "Whether the filter errs as much as it claims: Monte Carlo trials of a scene");
-  const auto options = std::make_shared<CommandOptions>();
-  sim::CampaignOptions& c = options->campaign;
-  add_scene_options(*app, options->scene);
-  app->add_option("--trials", options->trials, "in place of the scene's")
-      ->check(CLI::Range(1, 10'000'000));
-  app->add_option("--first-seed", options->first_seed,
-                  "trial k has this seed + k; in place of the scene's");
-  app->add_option("--threads", c.threads,
-                  "0: all processors, or one for each rank under mpirun or srun")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app->add_option("--journal", c.journal,
-                  "keep finished trials here, and do not run again those that are")
+void add_options(CLI::App& app, CampaignChoice& options) {
+  add_scene_options(app, options.scene);
+  add_trial_options(app, options.scene, 10'000'000, "in place of the scene's");
+  sim::CampaignOptions& c = options.campaign;
+  add_threads_option(app, c.threads, "of this process, or of each rank under mpirun or srun; ");
+  app.add_option("--journal", c.journal,
+                 "keep finished trials here, and do not run again those that are")
       ->type_name("FILE");
-  app->add_option("--score-last-s", c.score_last_s,
-                  "score fixes this close to the scene's end, s (default: as the scene's budget)")
-      ->check(CLI::PositiveNumber);
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Results are the same to the bit on any number of threads and ranks.\n"
-      "Examples:\n"
-      "  leeway campaign --scene car.toml --trials 1000 --journal car.journal\n"
-      "  mpirun -n 4 leeway campaign --scene car.toml --trials 1000 --journal car.journal");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  app.add_option("--score-last-s", c.score_last_s,
+                 "score fixes this close to the scene's end, s (default: as the scene's limit)")
+      ->check(positive());
+  add_output_options(app, options.output);
 }
 
+const Command kCampaign{
+    "campaign", "Whether the filter errs as much as it claims: Monte Carlo trials of a scene",
+    "Results are the same to the bit on any number of threads and ranks.\n"
+    "Examples:\n"
+    "  leeway campaign --scene car.toml --trials 1000 --journal car.journal\n"
+    "  mpirun -n 4 leeway campaign --scene car.toml --trials 1000 --journal car.journal",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

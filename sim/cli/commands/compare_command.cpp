@@ -1,13 +1,17 @@
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
-#include <filesystem>
-#include <memory>
-#include <optional>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 #include "leeway/sim/compare/compare.hpp"
-#include "sim/cli/commands.hpp"
+#include "leeway/sim/compare/pareto.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/compare_report.hpp"
-#include "sim/cli/pages/report.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -16,84 +20,160 @@ namespace {
 constexpr double kEnoughS = 600.0;
 constexpr double kEnoughFixes = 10.0;
 
-struct CompareCommand {
-  SceneChoice scene{};
-  int trials{10};
-  std::optional<std::uint64_t> first_seed{};
+struct CompareChoice {
+  SceneChoice scene{.trials = 10};
   sim::CompareOptions compare{};
-  std::filesystem::path report{};
-  bool json{false};
+  Output output{};
 };
 
-/// A beginning of the scene unless --at says otherwise, and the command's trials.
-sim::Scene compared_scene(const CompareCommand& options) {
+double nees_of(const sim::Accuracy& accuracy) {
+  return accuracy.has_claim ? accuracy.figures.mean_nees : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Rows are numbered from 1.
+std::string number_of(const std::optional<std::size_t>& index) {
+  return index ? fmt::format("#{}", *index + 1) : std::string();
+}
+
+std::string outcome_of(const sim::Accuracy& accuracy) {
+  const sim::Consistency consistency = sim::consistency_of(accuracy);
+  const sim::CampaignResult& r = accuracy.figures;
+  const std::string word(sim::name(consistency));
+  if (consistency == sim::Consistency::kNotFinite) {
+    return fmt::format("{}: {} of {}", word, r.not_finite, r.trials);
+  }
+  if (consistency == sim::Consistency::kDiverged) {
+    return fmt::format("{}: {} of {}", word, r.diverged, r.trials);
+  }
+  return word;
+}
+
+Tone tone_of(const sim::Compared& c) {
+  const sim::Consistency consistency = sim::consistency_of(c.accuracy);
+  if (consistency == sim::Consistency::kDiverged || consistency == sim::Consistency::kNotFinite) {
+    return Tone::kBad;
+  }
+  return c.on_front ? Tone::kGood : Tone::kPlain;
+}
+
+void print_rows(const sim::Comparison& comparison, bool only_front) {
+  Table table({"no.", "<front", "<variant", "ns/s", "least", "most", "RMS, m", "R95, m", "NEES",
+               "<consistency", "<dominated by"});
+  for (std::size_t i = 0; i < comparison.variants.size(); ++i) {
+    const sim::Compared& c = comparison.variants[i];
+    if (only_front && !c.on_front) continue;
+    table.add({number_of(i), c.on_front ? "*" : "", c.name, number(c.cost.median_ns_per_s, 0),
+               number(c.cost.least_ns_per_s, 0), number(c.cost.most_ns_per_s, 0),
+               number(c.accuracy.figures.rms_horizontal_m, 4), number(c.accuracy.r95_m, 4),
+               number(nees_of(c.accuracy), 2), outcome_of(c.accuracy), number_of(c.dominated_by)},
+              tone_of(c));
+  }
+  table.print();
+}
+
+void print_conditions(const sim::Comparison& comparison, int repeat) {
+  const sim::Scene& scene = comparison.scene;
+  std::vector<std::string> rates_hz;
+  for (const int n : comparison.imu_dividers) {
+    rates_hz.push_back(fmt::format("{:g}", scene.imu_rate_hz / n));
+  }
+  const sim::CampaignResult& any = comparison.variants.front().accuracy.figures;
+  fmt::print("Scene '{}': the first {:g} s, IMU {} at {} Hz, fixes every {:g} s\n", scene.name,
+             scene.duration_s, scene.imu_name, fmt::join(rates_hz, ", "), scene.gnss.interval_s);
+  fmt::print(
+      "{} variants. Errors: {} trials, seeds {} to {}, before each fix in the last {:g} s.\n",
+      comparison.variants.size(), scene.trials, scene.first_seed,
+      scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1,
+      std::min(sim::scored_part_s(scene), scene.duration_s));
+  fmt::print(
+      "Cost: the filter alone, ns per second of IMU data; median, least and most of {} runs of the "
+      "first seed, all variants in turn.\n",
+      repeat);
+  fmt::print("NEES of 15 states: {:.2f} to {:.2f} is consistent (95 %). No gate: fixes come {}.\n",
+             any.nees_low, any.nees_high, "without latency and outliers");
+}
+
+void print_comparison(const sim::Comparison& comparison, int repeat) {
+  print_conditions(comparison, repeat);
+  fmt::print("\nThe front: whoever wants less error pays more\n");
+  print_rows(comparison, true);
+  fmt::print(
+      "\nAll, from the cheapest on; dominated by another that errs no more (within {:g} %) and "
+      "costs less beyond the spread, or errs less and costs no more\n",
+      100.0 * sim::kErrorResolution);
+  print_rows(comparison, false);
+}
+
+Json comparison_json(const sim::Comparison& comparison) {
+  Json rows = Json::array();
+  for (const sim::Compared& c : comparison.variants) {
+    const sim::CampaignResult& r = c.accuracy.figures;
+    const std::optional<std::size_t>& by = c.dominated_by;
+    rows.push_back({{"variant", c.name},
+                    {"cost_ns_per_s", c.cost.median_ns_per_s},
+                    {"cost_least_ns_per_s", c.cost.least_ns_per_s},
+                    {"cost_most_ns_per_s", c.cost.most_ns_per_s},
+                    {"rms_horizontal_m", r.rms_horizontal_m},
+                    {"r95_m", c.accuracy.r95_m},
+                    {"nees", nees_of(c.accuracy)},
+                    {"nees_band", {r.nees_low, r.nees_high}},
+                    {"consistency", sim::name(sim::consistency_of(c.accuracy))},
+                    {"trials_diverged", r.diverged},
+                    {"trials_not_finite", r.not_finite},
+                    {"front", c.on_front},
+                    {"dominated_by", by ? Json(comparison.variants[*by].name) : Json()}});
+  }
+  return rows;
+}
+
+/// A beginning of the scene unless --at says otherwise.
+sim::Scene compared_scene(const CompareChoice& options) {
   sim::Scene scene = scene_of(options.scene);
   if (!options.scene.at_s) {
     const double enough_s = std::max(kEnoughS, kEnoughFixes * scene.gnss.interval_s);
     scene.duration_s = std::min(scene.duration_s, enough_s);
   }
-  scene.trials = options.trials;
-  if (options.first_seed) scene.first_seed = *options.first_seed;
   return scene;
 }
 
-sim::Comparison compared(const CompareCommand& options) {
+sim::Comparison compared(const CompareChoice& options) {
   sim::CompareOptions shown = options.compare;
   Progress progress("compare");
-  shown.progress = [&progress](double fraction) { progress.show(fraction); };
+  shown.progress = std::ref(progress);
   return sim::compare(compared_scene(options), shown);
 }
 
-int run(const CompareCommand& options) {
+int run(const CompareChoice& options) {
   const sim::Comparison comparison = compared(options);
-  Json input = scene_json(comparison.scene);
+  const int repeat = options.compare.repeat;
+  Json input = timed_input_json(comparison.scene, repeat);
   input.erase("gate_probability");  // there is no gate
-  input["repeat"] = options.compare.repeat;
-  const Json answer = answer_json("compare", std::move(input), comparison_json(comparison));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_comparison(comparison, options.compare.repeat);
-  }
-  // Last: a file that cannot be written must not cost the minutes that the rest took.
-  write_report(options.report, answer);
+  show(options.output, answer_json("compare", std::move(input), comparison_json(comparison)),
+       [&] { print_comparison(comparison, repeat); });
   const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
                                [](const sim::Compared& c) { return c.on_front; });
   return any ? kSuccess : kNoAnswer;
 }
 
-}  // namespace
-
-void add_compare_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "compare", "What each way of running the filter costs in a scene, and how much it errs");
-  const auto options = std::make_shared<CompareCommand>();
-  add_scene_options(*app, options->scene);
-  app->add_option("--trials", options->trials, "of every variant, for its errors")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
-  app->add_option("--first-seed", options->first_seed,
-                  "trial k has this seed + k; in place of the scene's")
-      ->check(CLI::NonNegativeNumber);
-  app->add_option("--repeat", options->compare.repeat, "timed runs of every variant")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app->add_option("--threads", options->compare.threads,
-                  "of the runs that are not timed; 0: all processors")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+void add_options(CLI::App& app, CompareChoice& options) {
+  add_scene_options(app, options.scene);
+  add_trial_options(app, options.scene, 10'000, "of every variant, for its errors (default: 10)");
+  add_repeat_option(app, options.compare.repeat);
+  add_threads_option(app, options.compare.threads, "of the runs that are not timed; ");
+  add_output_options(app, options.output);
   // Scripts may still have it.
-  app->add_option("--csv")->group("")->check([](const std::string&) {
+  app.add_option("--csv")->group("")->check([](const std::string&) {
     return "gone: use --json, whose results[] has these rows, and nees_band";
   });
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"
-      "whenever asked for; costs are of this machine, now.\n"
-      "Example:\n"
-      "  leeway compare --scene docs/examples/scenes/square-loop.toml --json");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
+const Command kCompare{
+    "compare", "What each way of running the filter costs in a scene, and how much it errs",
+    "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"
+    "whenever asked for; costs are of this machine, now.\n"
+    "Example:\n"
+    "  leeway compare --scene docs/examples/scenes/square-loop.toml --json > variants.json",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

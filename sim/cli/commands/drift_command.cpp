@@ -4,25 +4,23 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <memory>
 #include <string>
 
 #include "leeway/sim/trials/drift.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/report.hpp"
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
 namespace {
 
 using sim::DriftReading;
 
-struct DriftOptions {
+struct DriftChoice {
   sim::DriftConfig config{};
   std::filesystem::path curves{};
-  std::filesystem::path report{};
-  bool json{false};
+  Output output{};
 };
 
 constexpr const char* kWhyTheyDiffer =
@@ -64,7 +62,7 @@ void print_table(const sim::DriftStudy& study, const Cell& cell) {
   table.print();
 }
 
-void print_report(const DriftOptions& options, const sim::DriftStudy& study) {
+void print_tables(const DriftChoice& options, const sim::DriftStudy& study) {
   const sim::DriftConfig& c = options.config;
   fmt::print("Free-inertial drift from a perfect start, at rest at latitude {} deg\n",
              c.latitude_deg);
@@ -128,7 +126,7 @@ std::string curves_csv(const sim::DriftStudy& study) {
 Json curves_json(const sim::DriftStudy& study) {
   Json curves = Json::object();
   for (const sim::DriftCurve& curve : study.curves) {
-    ReportTable table({"t_s", "error_m", "p2_5_m", "p97_5_m"});
+    SeriesTable table({"t_s", "error_m", "p2_5_m", "p97_5_m"});
     const auto at = [](const std::vector<double>& values, std::size_t k) {
       return k < values.size() ? values[k] : std::numeric_limits<double>::quiet_NaN();
     };
@@ -141,10 +139,10 @@ Json curves_json(const sim::DriftStudy& study) {
   return curves;
 }
 
-int run(const DriftOptions& options) {
+int run(const DriftChoice& options) {
   const sim::DriftStudy study = [&options] {
     Progress progress("drift");
-    return sim::drift_study(options.config, [&](double fraction) { progress.show(fraction); });
+    return sim::drift_study(options.config, std::ref(progress));
   }();
   if (!options.curves.empty()) write_file(options.curves, curves_csv(study));
   const sim::DriftConfig& c = options.config;
@@ -154,34 +152,28 @@ int run(const DriftOptions& options) {
                                    {"latitude_deg", c.latitude_deg},
                                    {"imu_rate_hz", c.imu_rate_hz}},
                                   results_json(study));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_report(options, study);
-  }
-  write_report(options.report, answer, curves_json(study));
+  show(
+      options.output, answer, [&] { print_tables(options, study); },
+      [&] { return curves_json(study); });
   return kSuccess;
 }
 
-}  // namespace
-
-void add_drift_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "drift", "How far each class of IMU drifts on its own, from a perfect start at rest");
-  const auto options = std::make_shared<DriftOptions>();
-  sim::DriftConfig& c = options->config;
-  app->add_option("--trials", c.trials, "Monte Carlo trials of a cell")->capture_default_str();
-  app->add_option("--seed", c.seed, "of the random numbers")->capture_default_str();
-  app->add_option("--latitude", c.latitude_deg, "deg")->type_name("DEG")->capture_default_str();
-  app->add_option("--imu-rate-hz", c.imu_rate_hz, "IMU rate, Hz")
+void add_options(CLI::App& app, DriftChoice& options) {
+  sim::DriftConfig& c = options.config;
+  app.add_option("--trials", c.trials, "Monte Carlo trials of a cell")->capture_default_str();
+  app.add_option("--seed", c.seed, "of the random numbers")->capture_default_str();
+  app.add_option("--latitude", c.latitude_deg, "deg")->type_name("DEG")->capture_default_str();
+  app.add_option("--imu-rate-hz", c.imu_rate_hz, "IMU rate, Hz")
       ->type_name("HZ")
       ->capture_default_str();
-  app->add_option("--curves", options->curves, "write error against time as CSV (m, s)")
+  app.add_option("--curves", options.curves, "write error against time as CSV (m, s)")
       ->type_name("FILE.csv");
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer("Example:\n  leeway drift --trials 500 --curves drift.csv");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  add_output_options(app, options.output);
 }
 
+const Command kDrift{"drift",
+                     "How far each class of IMU drifts on its own, from a perfect start at rest",
+                     "Example:\n  leeway drift --trials 500 --curves drift.csv", add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -1,17 +1,17 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <memory>
 #include <string>
 
 #include "leeway/ekf/ekf_config.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/gnss_log.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/commands/fuse_jobs.hpp"
-#include "sim/cli/pages/fuse_report.hpp"
+#include "sim/cli/output.hpp"
 #include "sim/cli/pages/fuse_series.hpp"
-#include "sim/cli/pages/report.hpp"
+#include "sim/cli/tables/fuse_tables.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -68,21 +68,17 @@ int run(const FuseOptions& options) {
   const NamedImu imu = imu_of(options.imu);
   const NavigatorConfig config = navigator_config(options, imu.model);
   std::vector<FuseJob> jobs = fuse_jobs(options);
-  const std::filesystem::path& report = options.output.report;
+  const bool reported = !options.output.show.report.empty();
   Json all_series = Json::object();
   for (FuseJob& job : jobs) {
     FuseSeries series;
-    replay(job, config, report.empty() ? nullptr : &series);
-    if (!report.empty()) series.add_to(all_series, job.drive);
+    replay(job, config, reported ? &series : nullptr);
+    if (reported) series.add_to(all_series, job.drive);
     warn(job);
   }
-  const Json answer = fuse_json(options, imu.name, jobs);
-  if (options.output.json) {
-    print_json(answer);
-  } else {
-    print_tables(options, imu.name, jobs);
-  }
-  write_report(report, answer, std::move(all_series));
+  show(
+      options.output.show, fuse_json(options, imu.name, jobs),
+      [&] { print_tables(options, imu.name, jobs); }, [&] { return all_series; });
   return std::all_of(jobs.begin(), jobs.end(), is_answered) ? kSuccess : kNoAnswer;
 }
 
@@ -175,7 +171,7 @@ void add_timing_options(CLI::App& app, TimingConfig& timing) {
       ->capture_default_str();
 }
 
-void add_output_options(CLI::App& app, FuseOutput& output) {
+void add_solution_options(CLI::App& app, FuseOutput& output) {
   app.add_option("--out", output.solution, "write the solution as CSV; gzip when it ends in .gz")
       ->type_name("FILE")
       ->excludes(app.get_option("--drive"));
@@ -183,28 +179,25 @@ void add_output_options(CLI::App& app, FuseOutput& output) {
                  "solution epochs per second, in the file and in the RMS errors")
       ->check(CLI::Range(1e-3, 1e4))
       ->capture_default_str();
-  add_report_option(app, output.report);
   app.add_flag("--verbose", output.verbose, "list every outage, also when they are more than 20");
-  app.add_flag("--json", output.json, "one JSON object on standard output instead of tables");
+  add_output_options(app, output.show);
 }
+
+void add_options(CLI::App& app, FuseOptions& options) {
+  add_log_options(app, options.logs);
+  add_filter_options(app, options);
+  add_vehicle_options(app, options.vehicle);
+  add_timing_options(app, options.timing);
+  add_solution_options(app, options.output);
+}
+
+const Command kFuse{
+    "fuse", "Fuse an IMU and a GNSS log, and tell how far the solution is off",
+    "Examples:\n"
+    "  leeway fuse --imu imu.csv --gnss gnss.csv --truth truth.csv --out solution.csv\n"
+    "  leeway fuse --imu imu.csv --gnss gnss.csv --vehicle car\n"
+    "  leeway fuse --drive drives/one --drive drives/two --json",
+    add_options, run};
 
 }  // namespace
-
-void add_fuse_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "fuse", "Fuse an IMU and a GNSS log, and tell how far the solution is off");
-  const auto options = std::make_shared<FuseOptions>();
-  add_log_options(*app, options->logs);
-  add_filter_options(*app, *options);
-  add_vehicle_options(*app, options->vehicle);
-  add_timing_options(*app, options->timing);
-  add_output_options(*app, options->output);
-  app->footer(
-      "Examples:\n"
-      "  leeway fuse --imu imu.csv --gnss gnss.csv --truth truth.csv --out solution.csv\n"
-      "  leeway fuse --imu imu.csv --gnss gnss.csv --vehicle car\n"
-      "  leeway fuse --drive drives/one --drive drives/two --json");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
-}
-
 }  // namespace leeway::cli

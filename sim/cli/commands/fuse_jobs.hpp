@@ -10,6 +10,7 @@
 
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/replay/replay.hpp"
+#include "sim/cli/answer.hpp"
 #include "sim/cli/options.hpp"
 
 namespace leeway::cli {
@@ -31,10 +32,9 @@ struct FuseLogs {
 
 struct FuseOutput {
   std::filesystem::path solution{};
-  std::filesystem::path report{};
   double rate_hz{10.0};
   bool verbose{false};
-  bool json{false};
+  Output show{};
 };
 
 /// Aiding by what is known of the vehicle.

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
 
@@ -21,10 +21,10 @@ using sim::ImuPart;
 using sim::Meaning;
 using sim::Triad;
 
-struct ImuOptions {
+struct ShownChoice {
   std::string name{};
   std::string range{"mid"};
-  bool json{false};
+  Output output{};
 };
 
 /// What is shown of one IMU, of the catalogue or not.
@@ -38,7 +38,7 @@ bool is_file(const std::string& name) {
   return name.ends_with(".toml") || std::filesystem::exists(name);
 }
 
-Shown shown(const ImuOptions& options) {
+Shown shown(const ShownChoice& options) {
   ImuChoice choice;
   choice.range = options.range;
   if (is_imu_class(options.name)) {
@@ -113,7 +113,7 @@ void print_class(const ImuErrorModel& model) {
       name(c.gyro_noise));
 }
 
-void print_report(const Shown& s) {
+void print_tables(const Shown& s) {
   if (s.part != nullptr) {
     fmt::print("{}, {}: {} grade, gyros and accelerometers: {}\n", s.part->name,
                s.part->manufacturer, name(s.part->grade), s.part->technology);
@@ -218,34 +218,30 @@ Json list_json() {
   return list;
 }
 
-int run(const ImuOptions& options) {
+int run(const ShownChoice& options) {
   if (options.name.empty()) {
-    options.json ? print_json("imu", Json::object(), list_json()) : print_list();
+    show(options.output, answer_json("imu", Json::object(), list_json()), print_list);
     return kSuccess;
   }
   const Shown s = shown(options);
-  if (options.json) {
-    print_json("imu", {{"name", options.name}, {"range", options.range}}, shown_json(s));
-  } else {
-    print_report(s);
-  }
+  show(options.output,
+       answer_json("imu", {{"name", options.name}, {"range", options.range}}, shown_json(s)),
+       [&] { print_tables(s); });
   return kSuccess;
 }
 
-}  // namespace
-
-void add_imu_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "imu", "Error model of an IMU: its datasheet, the conversions, its class");
-  const auto options = std::make_shared<ImuOptions>();
+void add_options(CLI::App& app, ShownChoice& options) {
   CLI::Option* imu =
-      app->add_option("name", options->name,
-                      "part of the catalogue, class, automotive-mems or a TOML model file; without "
-                      "it, the list of parts");
-  add_range_option(*app, options->range)->needs(imu);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer("Examples:\n  leeway imu STIM300\n  leeway imu tactical --range high");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+      app.add_option("name", options.name,
+                     "part of the catalogue, class, automotive-mems or a TOML model file; without "
+                     "it, the list of parts");
+  add_range_option(app, options.range)->needs(imu);
+  add_json_option(app, options.output.json);
 }
 
+const Command kImu{"imu", "Error model of an IMU: its datasheet, the conversions, its class",
+                   "Examples:\n  leeway imu STIM300\n  leeway imu tactical --range high",
+                   add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -3,29 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/analysis/interval.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/commands/interval_confirm.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/interval_report.hpp"
 #include "sim/cli/pages/interval_series.hpp"
-#include "sim/cli/pages/report.hpp"
 #include "sim/cli/scene_options.hpp"
+#include "sim/cli/tables/interval_tables.hpp"
 
 namespace leeway::cli {
 namespace {
 
-struct IntervalOptions {
+struct IntervalChoice {
   SceneChoice scene{};
   int confirm_trials{0};
   std::vector<double> confirm_limits_m{};
-  std::filesystem::path report{};
-  bool json{false};
+  Output output{};
 };
 
 /// All five classes, unless the command line names IMUs; the scene's own when it is none of them.
@@ -48,7 +46,7 @@ std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
 }
 
 /// @throws Error when an answer is to be confirmed that was not asked for.
-std::vector<double> limits_of(const IntervalOptions& options) {
+std::vector<double> limits_of(const IntervalChoice& options) {
   std::vector<double> limits_m = options.scene.limits_m;
   if (limits_m.empty()) limits_m = {1.0, 3.0, 10.0, 30.0, 100.0};
   for (const double limit_m : options.confirm_limits_m) {
@@ -60,7 +58,7 @@ std::vector<double> limits_of(const IntervalOptions& options) {
 }
 
 /// @param series  gets the curves behind the answers
-std::vector<SolvedImu> solve(const IntervalOptions& options, Json& series) {
+std::vector<SolvedImu> solve(const IntervalChoice& options, Json& series) {
   const std::vector<double> limits_m = limits_of(options);
   const std::vector<sim::Scene> scenes = scenes_to_solve(options.scene);
   std::vector<SolvedImu> solved;
@@ -76,48 +74,41 @@ std::vector<SolvedImu> solve(const IntervalOptions& options, Json& series) {
   return solved;
 }
 
-int run(const IntervalOptions& options) {
+int run(const IntervalChoice& options) {
   Json series = Json::object();
   std::vector<SolvedImu> solved = solve(options, series);
   if (options.confirm_trials > 0) {
     confirm(solved, options.confirm_trials, options.confirm_limits_m);
   }
-  const Json answer = interval_json(solved);
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_interval_tables(solved);
-  }
-  write_report(options.report, answer, std::move(series));
+  show(
+      options.output, interval_json(solved), [&] { print_interval_tables(solved); },
+      [&] { return series; });
   return kSuccess;
 }
 
-}  // namespace
-
-void add_interval_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "interval", "The longest time between fixes for which the error stays within a limit");
-  const auto options = std::make_shared<IntervalOptions>();
-  add_scene_options(*app, options->scene);
-  app->add_option("--confirm", options->confirm_trials,
-                  "run so many Monte Carlo trials of the whole filter at every answer")
+void add_options(CLI::App& app, IntervalChoice& options) {
+  add_scene_options(app, options.scene);
+  app.add_option("--confirm", options.confirm_trials,
+                 "run so many Monte Carlo trials of the whole filter at every answer")
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
-  app->add_option("--confirm-limit", options->confirm_limits_m,
-                  "confirm the answers for these limits only, m; several with commas")
+  app.add_option("--confirm-limit", options.confirm_limits_m,
+                 "confirm the answers for these limits only, m; several with commas")
       ->delimiter(',')
       ->type_name("M")
       ->needs("--confirm");
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Without --imu: the five classes of the source paper, and the scene's own IMU. Without\n"
-      "--limit: 1, 3, 10, 30 and 100 m.\n"
-      "Examples:\n"
-      "  leeway interval --scene docs/examples/scenes/town-car.toml\n"
-      "  leeway interval --scene docs/examples/scenes/square-loop.toml --imu tactical --limit 10 "
-      "--confirm 200");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  add_output_options(app, options.output);
 }
 
+const Command kInterval{
+    "interval", "The longest time between fixes for which the error stays within a limit",
+    "Without --imu: the five classes of the source paper, and the scene's own IMU. Without\n"
+    "--limit: 1, 3, 10, 30 and 100 m.\n"
+    "Examples:\n"
+    "  leeway interval --scene docs/examples/scenes/town-car.toml\n"
+    "  leeway interval --scene docs/examples/scenes/square-loop.toml --imu tactical --limit 10 "
+    "--confirm 200",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -1,92 +1,201 @@
-#include <filesystem>
-#include <memory>
-#include <optional>
+#include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
-#include "sim/cli/commands.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/pages/reduce_report.hpp"
-#include "sim/cli/pages/report.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
 
-struct BudgetCommand {
+struct ReduceChoice {
   SceneChoice scene{};
-  std::optional<int> trials{};
-  std::optional<std::uint64_t> first_seed{};
-  sim::ReductionOptions budget{};
+  sim::ReductionOptions reduction{};
   std::filesystem::path write{};
-  std::filesystem::path report{};
-  bool json{false};
+  Output output{};
 };
 
-sim::Scene budget_scene(const BudgetCommand& options) {
-  sim::Scene scene = scene_of(options.scene);
-  if (options.trials) scene.trials = *options.trials;
-  if (options.first_seed) scene.first_seed = *options.first_seed;
-  return scene;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+double cost_of(const sim::TermWorth& term) { return term.cost ? term.cost->median_ns_per_s : kNan; }
+
+std::string remark(const sim::TermWorth& term, double limit_m) {
+  if (!std::isfinite(term.predicted_m)) return "P not positive";
+  return sim::agrees(term, limit_m) ? "" : "apart";
 }
 
-sim::ModelReduction budgeted(const BudgetCommand& options) {
-  sim::ReductionOptions shown = options.budget;
-  Progress progress("budget");
-  shown.progress = [&progress](double fraction) { progress.show(fraction); };
-  return sim::reduce_model(budget_scene(options), shown);
+void print_conditions(const sim::ModelReduction& reduction, int repeat) {
+  const sim::Scene& scene = reduction.scene;
+  fmt::print("Scene '{}': {:g} s, IMU {} at {:g} Hz, fixes every {:g} s; limit {:g} m ({})\n",
+             scene.name, scene.duration_s, scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s,
+             scene.limit.limit_m, name(scene.limit.metric));
+  fmt::print(
+      "Errors before each fix in the last {:g} s: {} trials, seeds {} to {}, no outliers, no gate. "
+      "Cost: median of {} runs of the filter, ns per second of IMU data.\n",
+      std::min(sim::scored_part_s(scene), scene.duration_s), scene.trials, scene.first_seed,
+      scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1, repeat);
 }
 
-int run(const BudgetCommand& options) {
-  const sim::ModelReduction budget = budgeted(options);
-  Json input = scene_json(budget.scene);
-  input.erase("gate_probability");  // there is no gate
-  input["repeat"] = options.budget.repeat;
-  const Json answer = answer_json("budget", std::move(input), model_budget_json(budget));
-  if (options.json) {
-    print_json(answer);
-  } else {
-    print_model_budget(budget, options.budget.repeat);
+void print_terms(const sim::ModelReduction& reduction) {
+  fmt::print(
+      "\nWhat each term of the full model is worth: RMS of the difference that its substitute "
+      "makes, horizontally\n");
+  Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark",
+               "diverged", "cost, ns/s", "<in the reduced model"});
+  for (const sim::TermWorth& term : reduction.terms) {
+    table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
+               number(term.predicted_m, 5), number(term.measured_m, 5),
+               number(term.predicted_m / term.measured_m, 2),
+               remark(term, reduction.scene.limit.limit_m), fmt::format("{}", term.diverged),
+               number(cost_of(term), 0),
+               !term.cost     ? "unmodelled"
+               : term.is_kept ? "kept"
+                              : "dropped"});
   }
-  write_report(options.report, answer);
-  if (!budget.keeps_limit || !budget.is_as_honest) return kNoAnswer;
+  table.print();
+}
+
+void print_models(const sim::ModelReduction& reduction) {
+  fmt::print("\nThe full model, and the cheapest found that keeps the limit\n");
+  Table table({"<model", "ns/s", "faster", "predicted, m", "measured, m", "limit, m", "RMS, m",
+               "RMS/sigma", "NEES", "predicted NEES", "diverged"});
+  for (const auto& [model, title] :
+       {std::pair{&reduction.full, "full"}, std::pair{&reduction.standard, "full, P every 0.1 s"},
+        std::pair{&reduction.at_full_rate, "reduced, full IMU rate"},
+        std::pair{&reduction.reduced, "reduced"}}) {
+    const sim::CampaignResult& r = model->measured.figures;
+    table.add({title, number(model->cost.median_ns_per_s, 0),
+               number(reduction.full.cost.median_ns_per_s / model->cost.median_ns_per_s, 2),
+               number(model->predicted.error_m, 3), number(model->measured.error_m, 3),
+               number(reduction.scene.limit.limit_m, 3), number(r.rms_horizontal_m, 3),
+               number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
+               number(model->predicted.nees, 2), fmt::format("{}", r.diverged)});
+  }
+  table.print();
+}
+
+void print_verdict(const sim::ModelReduction& reduction) {
+  const sim::CampaignResult& r = reduction.full.measured.figures;
+  fmt::print(
+      "\nThe reduced model {} the limit and claims {} (NEES {:.2f} to {:.2f} is consistent)\n",
+      reduction.keeps_limit ? "keeps" : "misses",
+      reduction.is_as_honest ? "as honestly as the full model" : "more than it keeps", r.nees_low,
+      r.nees_high);
+}
+
+Json model_json(const sim::ModelWorth& model) {
+  const sim::CampaignResult& r = model.measured.figures;
+  return {{"cost_ns_per_s", model.cost.median_ns_per_s},
+          {"cost_least_ns_per_s", model.cost.least_ns_per_s},
+          {"cost_most_ns_per_s", model.cost.most_ns_per_s},
+          {"predicted_m", model.predicted.error_m},
+          {"measured_m", model.measured.error_m},
+          {"rms_horizontal_m", r.rms_horizontal_m},
+          {"predicted_rms_horizontal_m", model.predicted.rms_m},
+          {"rms_over_sigma", r.rms_over_sigma},
+          {"nees", r.mean_nees},
+          {"nees_band", {r.nees_low, r.nees_high}},
+          {"predicted_nees", model.predicted.nees},
+          {"difference_m", model.measured.difference_m},
+          {"trials_diverged", r.diverged},
+          {"trials_not_finite", r.not_finite}};
+}
+
+void print_reduction(const sim::ModelReduction& reduction, int repeat) {
+  print_conditions(reduction, repeat);
+  print_terms(reduction);
+  print_models(reduction);
+  print_verdict(reduction);
+}
+
+Json reduction_json(const sim::ModelReduction& reduction) {
+  const double limit_m = reduction.scene.limit.limit_m;
+  Json terms = Json::array();
+  for (const sim::TermWorth& term : reduction.terms) {
+    terms.push_back({{"term", sim::name(term.term)},
+                     {"substitute", sim::substitute(term.term)},
+                     {"predicted_m", term.predicted_m},
+                     {"measured_m", term.measured_m},
+                     {"agrees", sim::agrees(term, limit_m)},
+                     {"trials_diverged", term.diverged},
+                     {"cost_ns_per_s", cost_of(term)},
+                     {"kept", term.cost.has_value() && term.is_kept}});
+  }
+  return {
+      {"limit_m", limit_m},
+      {"terms", std::move(terms)},
+      {"full", model_json(reduction.full)},
+      {"full_covariance_0_1_s", model_json(reduction.standard)},
+      {"reduced_full_rate", model_json(reduction.at_full_rate)},
+      {"reduced", model_json(reduction.reduced)},
+      {"keeps_limit", reduction.keeps_limit},
+      {"as_honest", reduction.is_as_honest},
+      {"speedup", reduction.full.cost.median_ns_per_s / reduction.reduced.cost.median_ns_per_s}};
+}
+
+std::string reduction_comment(const sim::ModelReduction& reduction) {
+  const sim::ModelWorth& reduced = reduction.reduced;
+  return fmt::format(
+      "The cheapest filter found for the scene '{}' within {:g} m ({}): {:.3f} m in {} trials,\n"
+      "{:.3f} m with the full model; {:.2f} times as fast; RMS over sigma {:.3f} ({:.3f}), NEES "
+      "{:.2f} ({:.2f}).",
+      reduction.scene.name, reduction.scene.limit.limit_m, name(reduction.scene.limit.metric),
+      reduced.measured.error_m, reduced.measured.figures.trials, reduction.full.measured.error_m,
+      reduction.full.cost.median_ns_per_s / reduced.cost.median_ns_per_s,
+      reduced.measured.figures.rms_over_sigma, reduction.full.measured.figures.rms_over_sigma,
+      reduced.measured.figures.mean_nees, reduction.full.measured.figures.mean_nees);
+}
+
+sim::ModelReduction reduced(const ReduceChoice& options) {
+  sim::ReductionOptions shown = options.reduction;
+  Progress progress("reduce");
+  shown.progress = std::ref(progress);
+  return sim::reduce_model(scene_of(options.scene), shown);
+}
+
+int run(const ReduceChoice& options) {
+  const sim::ModelReduction reduction = reduced(options);
+  const int repeat = options.reduction.repeat;
+  show(options.output,
+       answer_json("reduce", timed_input_json(reduction.scene, repeat), reduction_json(reduction)),
+       [&] { print_reduction(reduction, repeat); });
+  if (!reduction.keeps_limit || !reduction.is_as_honest) return kNoAnswer;
   if (!options.write.empty()) {
-    const sim::Scene reduced = sim::with_model(budget.scene, budget.reduced.model);
-    write_file(options.write, sim::filter_file(reduced, model_budget_comment(budget)));
+    const sim::Scene cheap = sim::with_model(reduction.scene, reduction.reduced.model);
+    write_file(options.write, sim::filter_file(cheap, reduction_comment(reduction)));
   }
   return kSuccess;
 }
 
-}  // namespace
-
-void add_budget_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "budget",
-      "What each term of the filter's model is worth in a scene, what it costs, and the "
-      "cheapest filter that keeps the limit");
-  const auto options = std::make_shared<BudgetCommand>();
-  add_scene_options(*app, options->scene);
-  app->add_option("--trials", options->trials, "of every model; in place of the scene's")
-      ->check(CLI::Range(1, 10'000));
-  app->add_option("--first-seed", options->first_seed,
-                  "trial k has this seed + k; in place of the scene's")
-      ->check(CLI::NonNegativeNumber);
-  app->add_option("--repeat", options->budget.repeat, "timed runs of every model")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app->add_option("--threads", options->budget.threads, "of what is not timed; 0: all processors")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app->add_option("--write", options->write,
-                  "write the cheapest filter as a file for --filter, if it keeps the limit")
+void add_options(CLI::App& app, ReduceChoice& options) {
+  add_scene_options(app, options.scene);
+  add_trial_options(app, options.scene, 10'000, "of every model; in place of the scene's");
+  add_repeat_option(app, options.reduction.repeat);
+  add_threads_option(app, options.reduction.threads, "of what is not timed; ");
+  app.add_option("--write", options.write,
+                 "write the cheapest filter as a file for --filter, if it keeps the limit")
       ->type_name("FILE.toml");
-  add_report_option(*app, options->report);
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of tables");
-  app->footer(
-      "Exit code 2: no cheaper filter found that keeps the limit in the trials; none is written.\n"
-      "Example:\n"
-      "  leeway budget --scene docs/examples/scenes/town-car.toml --write cheap.toml\n"
-      "  leeway campaign --scene docs/examples/scenes/town-car.toml --filter cheap.toml");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  add_output_options(app, options.output);
 }
 
+const Command kReduce{
+    "reduce",
+    "What each term of the filter's model is worth in a scene, what it costs, and the cheapest "
+    "filter that keeps the limit",
+    "Exit code 2: no cheaper filter found that keeps the limit in the trials; none is written.\n"
+    "Example:\n"
+    "  leeway reduce --scene docs/examples/scenes/town-car.toml --write cheap.toml\n"
+    "  leeway campaign --scene docs/examples/scenes/town-car.toml --filter cheap.toml",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

@@ -1,21 +1,41 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <string>
 
+#include "leeway/earth/error.hpp"
+#include "leeway/logs/gnss_log.hpp"
+#include "leeway/logs/imu_log.hpp"
+#include "leeway/logs/truth_log.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "leeway/sim/scene/scene_file.hpp"
-#include "sim/cli/commands.hpp"
+#include "leeway/sim/scene/receiver.hpp"
+#include "leeway/sim/scene/scene.hpp"
+#include "leeway/sim/sensors/imu_simulator.hpp"
+#include "sim/cli/answer.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/output.hpp"
-#include "sim/cli/scene_logs.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
+
+/// A log that was written.
+struct SceneLog {
+  std::filesystem::path file{};
+  std::int64_t rows{0};
+};
+
+struct SceneLogs {
+  SceneLog imu{};
+  SceneLog gnss{};
+  SceneLog truth{};
+};
 
 /// A single-frequency code receiver under open sky.
 struct GnssOptions {
@@ -27,7 +47,7 @@ struct GnssOptions {
   double correlation_s{30.0};
 };
 
-struct SimulateOptions {
+struct SimulateChoice {
   std::filesystem::path scene{};  ///< in place of the options from here ..
   std::string trajectory{};
   double duration_s{600.0};
@@ -36,8 +56,10 @@ struct SimulateOptions {
   GnssOptions gnss{};
   std::optional<Eigen::Vector3d> lever_arm_b_m{};  ///< .. to here
   std::optional<std::uint64_t> seed{};
-  SceneLogOptions logs{};
-  bool json{false};
+  std::filesystem::path out{};  ///< folder; made when missing
+  double truth_rate_hz{20.0};
+  bool gzip{false};
+  Output output{};
 };
 
 using Factory = std::function<sim::Trajectory(double duration_s)>;
@@ -60,7 +82,7 @@ const std::map<std::string, Factory>& factories() {
   return all;
 }
 
-sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
+sim::GnssErrorModel gnss_model(const SimulateChoice& o) {
   const GnssOptions& g = o.gnss;
   sim::GnssErrorModel model;
   model.position_sigma_n_m = {g.sigma_h_m, g.sigma_h_m, g.sigma_v_m};
@@ -71,7 +93,7 @@ sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
   return model;
 }
 
-sim::Scene scene_from_options(const SimulateOptions& options) {
+sim::Scene scene_from_options(const SimulateChoice& options) {
   const NamedImu imu = imu_of(options.imu);
   sim::Scene scene;
   scene.name = options.trajectory;
@@ -84,7 +106,7 @@ sim::Scene scene_from_options(const SimulateOptions& options) {
   return scene;
 }
 
-Json options_json(const SimulateOptions& options, const sim::Scene& scene) {
+Json options_json(const SimulateChoice& options, const sim::Scene& scene) {
   const GnssOptions& g = options.gnss;
   return {{"trajectory", options.trajectory},
           {"duration_s", options.duration_s},
@@ -99,30 +121,94 @@ Json options_json(const SimulateOptions& options, const sim::Scene& scene) {
           {"lever_arm_m", json_of(options.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))}};
 }
 
-Json input_json(const SimulateOptions& options, const sim::Scene& scene) {
+std::uint64_t seed_of(const SimulateChoice& options, const sim::Scene& scene) {
+  return options.seed.value_or(scene.first_seed);
+}
+
+Json input_json(const SimulateChoice& options, const sim::Scene& scene) {
   Json input = options.scene.empty() ? options_json(options, scene) : scene_json(scene);
-  input["truth_rate_hz"] = options.logs.truth_rate_hz;
-  input["seed"] = options.logs.seed;
+  input["truth_rate_hz"] = options.truth_rate_hz;
+  input["seed"] = seed_of(options, scene);
   return input;
 }
 
 Json results_json(const SceneLogs& logs, const std::filesystem::path& description) {
-  return {{"imu", logs.imu.string()},
-          {"gnss", logs.gnss.string()},
-          {"truth", logs.truth.string()},
-          {"scene", description.string()},
-          {"imu_increments", logs.imu_increments},
-          {"gnss_fixes", logs.gnss_fixes},
-          {"truth_rows", logs.truth_rows}};
+  return {{"imu", logs.imu.file.string()},     {"gnss", logs.gnss.file.string()},
+          {"truth", logs.truth.file.string()}, {"scene", description.string()},
+          {"imu_increments", logs.imu.rows},   {"gnss_fixes", logs.gnss.rows},
+          {"truth_rows", logs.truth.rows}};
 }
 
-void print_report(const SimulateOptions& options, const sim::Scene& scene, const SceneLogs& logs) {
+/// Number of steps of 1 / rate that fit, forgiving the rounding of their product.
+std::int64_t steps(double duration_s, double rate_hz) {
+  return static_cast<std::int64_t>(std::floor(duration_s * rate_hz * (1.0 + 1e-12)));
+}
+
+double time_s(std::int64_t k, double rate_hz, const sim::Scene& scene) {
+  return std::min(static_cast<double>(k) / rate_hz, scene.duration_s);
+}
+
+/// @param row  what the log has as its row k
+template <class Writer, class Row>
+SceneLog write_log(const std::filesystem::path& file, std::int64_t rows, const Row& row) {
+  Writer writer(file);
+  for (std::int64_t k = 0; k < rows; ++k) writer.write(row(k));
+  writer.close();
+  return {file, rows};
+}
+
+SceneLog write_imu(const std::filesystem::path& file, const sim::Scene& scene, std::uint64_t seed) {
+  Progress progress("simulate");
+  sim::ImuErrorSimulator sensor(scene.imu, sim::Random(seed, 0, sim::kImuStream));
+  const std::int64_t count = steps(scene.duration_s, scene.imu_rate_hz);
+  return write_log<ImuLogWriter>(file, count, [&](std::int64_t k) {
+    progress.show(static_cast<double>(k) / static_cast<double>(count));
+    return sensor.measure(sim::true_increment(scene.trajectory, time_s(k, scene.imu_rate_hz, scene),
+                                              time_s(k + 1, scene.imu_rate_hz, scene)));
+  });
+}
+
+SceneLog write_gnss(const std::filesystem::path& file, const sim::Scene& scene,
+                    std::uint64_t seed) {
+  sim::Receiver receiver(scene.trajectory, scene.gnss, seed);
+  const std::vector<double> times_s = fix_times_s(scene.gnss, scene.duration_s);
+  return write_log<GnssLogWriter>(
+      file, static_cast<std::int64_t>(times_s.size()),
+      [&](std::int64_t k) { return receiver.fix_at(times_s[static_cast<std::size_t>(k)]); });
+}
+
+SceneLog write_truth(const std::filesystem::path& file, const sim::Scene& scene, double rate_hz) {
+  return write_log<TruthLogWriter>(
+      file, steps(scene.duration_s, rate_hz) + 1, [&](std::int64_t k) -> TruthRecord {
+        const sim::TruthPoint truth = sim::truth_at(scene.trajectory, time_s(k, rate_hz, scene));
+        return {ned_from_nav_state(truth.nav), true, true};
+      });
+}
+
+/// Writes the logs one after the other, in constant memory. Fixes in outages are left out, outliers
+/// are in; a fix has the time it is valid at, whatever the latency.
+/// @throws Error when a log cannot be written.
+SceneLogs write_logs(const SimulateChoice& options, const sim::Scene& scene) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) throw Error(options.out.string() + ": cannot be made: " + error.message());
+  const std::string end = options.gzip ? ".csv.gz" : ".csv";
+  const std::uint64_t seed = seed_of(options, scene);
+  return {.imu = write_imu(options.out / ("imu" + end), scene, seed),
+          .gnss = write_gnss(options.out / ("gnss" + end), scene, seed),
+          .truth = write_truth(options.out / ("truth" + end), scene, options.truth_rate_hz)};
+}
+
+void print_tables(const SimulateChoice& options, const sim::Scene& scene, const SceneLogs& logs) {
   fmt::print("Simulated {} s of '{}' into {}\n", scene.duration_s, scene.name,
-             options.logs.out.string());
+             options.out.string());
   Table table({"<log", "rows", "<file"});
-  table.add({"IMU increments", std::to_string(logs.imu_increments), logs.imu.string()});
-  table.add({"GNSS fixes", std::to_string(logs.gnss_fixes), logs.gnss.string()});
-  table.add({"truth", std::to_string(logs.truth_rows), logs.truth.string()});
+  const auto add = [&table](const char* what, const SceneLog& log) {
+    table.add({what, std::to_string(log.rows), log.file.string()});
+  };
+  add("IMU increments", logs.imu);
+  add("GNSS fixes", logs.gnss);
+  add("truth", logs.truth);
   table.print();
   if (scene.gnss.latency_s > 0.0) {
     fmt::print("Fixes have the time they are valid at; the scene delivers them {} s later.\n",
@@ -130,26 +216,22 @@ void print_report(const SimulateOptions& options, const sim::Scene& scene, const
   }
 }
 
-int run(SimulateOptions options) {
+int run(const SimulateChoice& options) {
   if (options.scene.empty() && options.trajectory.empty()) {
     throw Error("simulate: give --scene FILE.toml or --trajectory NAME");
   }
   const sim::Scene scene =
-      options.scene.empty() ? scene_from_options(options) : sim::read_scene(options.scene);
-  options.logs.seed = options.seed.value_or(scene.first_seed);
+      options.scene.empty() ? scene_from_options(options) : scene_from_file(options.scene);
   validate(scene);
-  const std::filesystem::path description = options.logs.out / "scene.json";
+  const std::filesystem::path description = options.out / "scene.json";
   const SceneLogs logs = writing([&] {
-    Progress progress("simulate");
-    SceneLogs written = write_scene_logs(scene, options.logs, progress);
+    const SceneLogs written = write_logs(options, scene);
     write_file(description, input_json(options, scene).dump(2) + "\n");
     return written;
   });
-  if (options.json) {
-    print_json("simulate", input_json(options, scene), results_json(logs, description));
-  } else {
-    print_report(options, scene, logs);
-  }
+  show(options.output,
+       answer_json("simulate", input_json(options, scene), results_json(logs, description)),
+       [&] { print_tables(options, scene, logs); });
   return kSuccess;
 }
 
@@ -175,44 +257,42 @@ void exclude_all(CLI::App& app, CLI::Option* scene) {
   }
 }
 
-}  // namespace
-
-void add_simulate_command(CLI::App& program, int& exit_code) {
-  CLI::App* app = program.add_subcommand(
-      "simulate", "Make IMU, GNSS and truth logs of a drive, for leeway fuse to read");
-  const auto options = std::make_shared<SimulateOptions>();
+void add_options(CLI::App& app, SimulateChoice& options) {
   std::vector<std::string> trajectories;
   for (const auto& [name, make] : factories()) trajectories.push_back(name);
-  app->add_option("--trajectory", options->trajectory, "the motion")
+  app.add_option("--trajectory", options.trajectory, "the motion")
       ->check(CLI::IsMember(trajectories));
-  app->add_option("--duration-s", options->duration_s, "length, s")
+  app.add_option("--duration-s", options.duration_s, "length, s")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  app->add_option("--imu-rate-hz", options->imu_rate_hz, "IMU increments per second")
+  app.add_option("--imu-rate-hz", options.imu_rate_hz, "IMU increments per second")
       ->check(CLI::Range(1.0, 1e4))
       ->capture_default_str();
-  add_imu_options(*app, options->imu);
-  add_gnss_options(*app, options->gnss);
-  add_numbers<3>(*app, "--lever", "X,Y,Z", options->lever_arm_b_m,
+  add_imu_options(app, options.imu);
+  add_gnss_options(app, options.gnss);
+  add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
                  "IMU to antenna, forward, right, down, m (default: 0,0,0)");
-  exclude_all(*app, app->add_option("--scene", options->scene,
-                                    "scene file, in place of all options above it")
-                        ->type_name("FILE.toml"));
-  app->add_option("--truth-rate-hz", options->logs.truth_rate_hz, "truth rows per second")
+  exclude_all(
+      app, app.add_option("--scene", options.scene, "scene file, in place of all options above it")
+               ->type_name("FILE.toml"));
+  app.add_option("--truth-rate-hz", options.truth_rate_hz, "truth rows per second")
       ->check(CLI::Range(0.1, 1e4))
       ->capture_default_str();
-  app->add_option("--seed", options->seed, "of the random numbers (default: 1, or the scene's)");
-  app->add_option("--out", options->logs.out, "folder to write to; made when missing")
+  app.add_option("--seed", options.seed, "of the random numbers (default: 1, or the scene's)");
+  app.add_option("--out", options.out, "folder to write to; made when missing")
       ->type_name("DIR")
       ->required();
-  app->add_flag("--gzip", options->logs.gzip, "compress the logs: imu.csv.gz and so on");
-  app->add_flag("--json", options->json, "one JSON object on standard output instead of a table");
-  app->footer(
-      "The GNSS defaults are typical of a single-frequency code receiver under open sky.\n"
-      "Example:\n"
-      "  leeway simulate --trajectory car --duration-s 1800 --imu-class tactical --out drive\n"
-      "  leeway simulate --scene docs/examples/scenes/tunnel.toml --out tunnel");
-  app->callback([options, &exit_code] { exit_code = run(*options); });
+  app.add_flag("--gzip", options.gzip, "compress the logs: imu.csv.gz and so on");
+  add_json_option(app, options.output.json);
 }
 
+const Command kSimulate{
+    "simulate", "Make IMU, GNSS and truth logs of a drive, for leeway fuse to read",
+    "The GNSS defaults are typical of a single-frequency code receiver under open sky.\n"
+    "Example:\n"
+    "  leeway simulate --trajectory car --duration-s 1800 --imu-class tactical --out drive\n"
+    "  leeway simulate --scene docs/examples/scenes/tunnel.toml --out tunnel",
+    add_options, run};
+
+}  // namespace
 }  // namespace leeway::cli

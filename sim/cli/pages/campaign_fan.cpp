@@ -6,7 +6,8 @@
 
 #include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/trials/trial.hpp"
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/output.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -61,7 +62,7 @@ double percentile_of(const std::vector<double>& sorted, double fraction) {
 
 Json campaign_fan(const sim::Scene& scene, int threads) {
   Spread spread = spread_of(scene, threads);
-  ReportTable fan(
+  SeriesTable fan(
       {"t_s", "p2_5_m", "p25_m", "p50_m", "p75_m", "p95_m", "p97_5_m", "claimed_r95_m"});
   for (std::size_t i = 0; i < spread.t_s.size(); ++i) {
     std::vector<double>& errors = spread.error_h_m[i];

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "leeway/sim/scene/scene.hpp"
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 

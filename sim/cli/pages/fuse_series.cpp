@@ -11,26 +11,15 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<std::string>& solution_columns() {
-  static const std::vector<std::string> names{"t_s",
-                                              "error_n_m",
-                                              "error_e_m",
-                                              "error_d_m",
-                                              "sigma_n_m",
-                                              "sigma_e_m",
-                                              "sigma_d_m",
-                                              "b_a_mps2_forward",
-                                              "b_a_mps2_right",
-                                              "b_a_mps2_down",
-                                              "sigma_b_a_mps2_forward",
-                                              "sigma_b_a_mps2_right",
-                                              "sigma_b_a_mps2_down",
-                                              "b_g_radps_forward",
-                                              "b_g_radps_right",
-                                              "b_g_radps_down",
-                                              "sigma_b_g_radps_forward",
-                                              "sigma_b_g_radps_right",
-                                              "sigma_b_g_radps_down"};
+std::vector<std::string> solution_columns() {
+  std::vector<std::string> names{"t_s"};
+  const auto add = [&names](const std::string& stem, std::initializer_list<const char*> axes) {
+    for (const char* axis : axes) names.push_back(stem + axis);
+  };
+  for (const char* stem : {"error_", "sigma_"}) add(stem, {"n_m", "e_m", "d_m"});
+  for (const char* stem : {"b_a_mps2_", "sigma_b_a_mps2_", "b_g_radps_", "sigma_b_g_radps_"}) {
+    add(stem, {"forward", "right", "down"});
+  }
   return names;
 }
 
@@ -44,10 +33,10 @@ std::array<double, 2> nis_band(int dof) {
 FuseSeries::FuseSeries()
     : solution_(solution_columns()),
       track_({"t_s", "east_m", "north_m", "true_east_m", "true_north_m"},
-             ReportTable::Keep::kFirst),
+             SeriesTable::Keep::kFirst),
       fixes_({"t_s", "nis", "nis_low", "nis_high"}),
-      outages_({"since_s", "outage", "error_h_m", "sigma_h_m"}, ReportTable::Keep::kFirst),
-      verdicts_(kVerdicts, ReportTable({"t_s"}, ReportTable::Keep::kFirst)) {}
+      outages_({"since_s", "outage", "error_h_m", "sigma_h_m"}, SeriesTable::Keep::kFirst),
+      verdicts_(kVerdicts, SeriesTable({"t_s"}, SeriesTable::Keep::kFirst)) {}
 
 sim::ReplayObserver FuseSeries::observer() {
   sim::ReplayObserver observer;
@@ -95,7 +84,7 @@ void FuseSeries::add(const UpdateOutcome& update) {
 }
 
 void FuseSeries::add_to(Json& series, const std::string& run) const {
-  const auto put = [&](const std::string& name, const ReportTable& table) {
+  const auto put = [&](const std::string& name, const SeriesTable& table) {
     if (!table.empty()) series[name] = table.json();
   };
   put("solution/" + run, solution_);

@@ -10,7 +10,7 @@
 
 #include "leeway/sim/replay/replay.hpp"
 #include "leeway/strapdown/nav_state.hpp"
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
 
@@ -32,11 +32,11 @@ class FuseSeries {
   void add_to_track(const Solution& solution, const std::optional<Eigen::Vector3d>& true_r_e_m);
   void add(const UpdateOutcome& update);
 
-  ReportTable solution_;
-  ReportTable track_;
-  ReportTable fixes_;
-  ReportTable outages_;
-  std::vector<ReportTable> verdicts_;
+  SeriesTable solution_;
+  SeriesTable track_;
+  SeriesTable fixes_;
+  SeriesTable outages_;
+  std::vector<SeriesTable> verdicts_;
   std::optional<Geodetic> origin_{};  ///< of the track
 };
 

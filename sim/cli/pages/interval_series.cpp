@@ -13,7 +13,7 @@ sim::IntervalConfig IntervalSeries::observed(sim::IntervalConfig config) {
 }
 
 void IntervalSeries::add_to(Json& series, const std::string& imu) const {
-  ReportTable curve({"interval_s", "true_m", "claimed_m"});
+  SeriesTable curve({"interval_s", "true_m", "claimed_m"});
   for (const auto& [interval_s, error_m] : errors_m_) {
     curve.add({interval_s, error_m.first, error_m.second});
   }

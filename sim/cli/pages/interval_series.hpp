@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "leeway/sim/analysis/interval.hpp"
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
 
@@ -26,7 +26,7 @@ class IntervalSeries {
 
  private:
   std::map<double, std::pair<double, double>> errors_m_{};  ///< true, claimed, by interval in s
-  ReportTable free_inertial_{{"t_s", "true_m"}};
+  SeriesTable free_inertial_{{"t_s", "true_m"}};
 };
 
 }  // namespace leeway::cli

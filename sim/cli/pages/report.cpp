@@ -6,6 +6,7 @@
 #include <cctype>
 #include <string>
 
+#include "sim/cli/output.hpp"
 #include "sim/report/report_template.hpp"
 
 namespace leeway::cli {
@@ -39,29 +40,19 @@ std::string as_element_text(const Json& json) {
 
 }  // namespace
 
-void add_report_option(CLI::App& app, std::filesystem::path& path) {
-  const CLI::Validator is_built(
-      [](std::string&) -> std::string {
-        if (!kReportTemplate.empty()) return {};
-        return "this program was built without its report page: install Node.js 18 or newer with "
-               "npm (apt-get install npm), then configure and build it again, with access to the "
-               "npm registry";
-      },
-      "");
-  app.add_option("--report", path,
-                 "write the answer as an HTML page with charts, complete in one "
-                 "file")
-      ->type_name("FILE.html")
-      ->check(is_built);
+std::string why_no_report() {
+  if (!kReportTemplate.empty()) return {};
+  return "this program was built without its report page: install Node.js 18 or newer with npm "
+         "(apt-get install npm), then configure and build it again, with access to the npm "
+         "registry";
 }
 
-void remember_command_line(int argc, const char* const* argv) {
+void remember_command_line(const std::vector<std::string>& words) {
   command_line() = "leeway";
-  for (int i = 1; i < argc; ++i) command_line() += " " + as_word(argv[i]);
+  for (const std::string& word : words) command_line() += " " + as_word(word);
 }
 
 void write_report(const std::filesystem::path& path, Json answer, Json series) {
-  if (path.empty()) return;
   answer["command_line"] = command_line();
   answer["series"] = std::move(series);
   const std::size_t mark = kReportTemplate.find(kDataMark);

@@ -3,23 +3,23 @@
 /// else.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
+#include <vector>
 
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 
-/// --report FILE. Refused, before anything is computed, where the program was built without its
-/// page.
-void add_report_option(CLI::App& app, std::filesystem::path& path);
+/// Why the program can write none, and what to do; empty when it can.
+std::string why_no_report();
 
-/// What a report names as its origin. Call once, first.
-void remember_command_line(int argc, const char* const* argv);
+/// What a report names as its origin: the words after the program's name. Call once, first.
+void remember_command_line(const std::vector<std::string>& words);
 
-/// Writes the page around an answer_json(). Nothing when the path is empty.
-/// @param series  tables by name, each a ReportTable::json()
+/// Writes the page around an answer_json().
+/// @param series  tables by name, each a SeriesTable::json()
 /// @throws WriteFailure
-void write_report(const std::filesystem::path& path, Json answer, Json series = Json::object());
+void write_report(const std::filesystem::path& path, Json answer, Json series);
 
 }  // namespace leeway::cli

@@ -109,7 +109,7 @@ TEST_CASE("the error per axis tends to sqrt(2.5 * 0.05 T) for short intervals" *
           doctest::test_suite("heavy")) {
   for (const ImuClass imu : {ImuClass::kMarine, ImuClass::kTactical}) {
     Scene scene = defined_case(imu, square_loop());
-    scene.budget.metric = HorizontalMetric::kAxis;
+    scene.limit.metric = HorizontalMetric::kAxis;
     scene.gnss.interval_s = 0.1;
     scene.duration_s = 7200.0;
     const double limit_m = std::sqrt(2.5 * 0.05 * 0.1);

@@ -56,7 +56,7 @@ TEST_CASE("the defined case: the reference's intervals within 6 %" * doctest::te
   }
 }
 
-TEST_CASE("a longer interval than the answer breaks the budget") {
+TEST_CASE("a longer interval than the answer breaks the limit") {
   const Scene scene = defined_case(ImuClass::kTactical);
   const Interval answer = solve_intervals(scene, {30.0}).front();
   Scene longer = scene;

@@ -58,7 +58,7 @@ TEST_CASE("atlas: a file that cannot be written is no success") {
   const Outcome outcome =
       leeway("atlas --short --scene dead-row --csv " + quoted(dir / "none" / "cells.csv"));
   CHECK(outcome.exit_code == 3);
-  CHECK(contains(outcome.err, "cannot be written"));
+  CHECK(contains(outcome.err, "cannot be written: No such file or directory"));
 }
 
 }  // namespace leeway::test

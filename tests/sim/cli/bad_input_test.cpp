@@ -131,7 +131,7 @@ TEST_CASE("a gap of 5 s in the IMU data is bridged and counted") {
   const Run gap = run(with_truth(dir.file("gap.csv", text_of(lines)), simulated().gnss));
   CHECK(gap.results.at("verdicts").at("gap") == 1);
   CHECK(contains(gap.warnings, "gap"));
-  // Coasting through 5 s of a car's driving may be off by tens of metres before the next fix: as
+  // Bridging 5 s of a car's driving may be off by tens of metres before the next fix: as
   // the RMS over 115 s, 30 m for 1 s is 2.8 m.
   CHECK(gap.results.at("rms").at("horizontal_m") < 3.0);
   CHECK(gap.results.at("solution").at("last_s") > 149.0);

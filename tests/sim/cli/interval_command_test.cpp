@@ -135,11 +135,11 @@ TEST_CASE("interval: wrong input is refused with what to do") {
   refused(scene("square-loop.toml") + "--range middle", "--range");
 }
 
-TEST_CASE("analyze: claimed, true and the budget, which adds up") {
+TEST_CASE("analyze: claimed, true and the error budget, which adds up") {
   const TempDir dir;
   const auto results =
       leeway("analyze" + scene("town-car.toml") + "--out " + quoted(dir / "moments.csv") +
-             " --budget " + quoted(dir / "budget.csv") + " --json")
+             " --error-budget " + quoted(dir / "budget.csv") + " --json")
           .json()
           .at("results");
   double share = 0.0;
@@ -153,9 +153,9 @@ TEST_CASE("analyze: claimed, true and the budget, which adds up") {
   CHECK(moments.starts_with("t_s,moment,claimed_n_m,"));
   // Every second of the scene, and twice more at every fix.
   CHECK(std::count(moments.begin(), moments.end(), '\n') > 1800);
-  const std::string budget = read_file(dir / "budget.csv");
-  CHECK(budget.starts_with("source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n"));
-  CHECK(contains(budget, "\ntotal,"));
+  const std::string error_budget = read_file(dir / "budget.csv");
+  CHECK(error_budget.starts_with("source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n"));
+  CHECK(contains(error_budget, "\ntotal,"));
 }
 
 TEST_CASE("analyze: the reference's table, by command line") {

@@ -12,7 +12,9 @@ namespace {
 
 TEST_CASE("help and version succeed, on standard output alone") {
   for (const char* arguments :
-       {"--help", "--version", "drift --help", "simulate --help", "fuse --help"}) {
+       {"--help", "--version", "analyze --help", "atlas --help", "campaign --help",
+        "compare --help", "drift --help", "fuse --help", "imu --help", "interval --help",
+        "reduce --help", "simulate --help"}) {
     CAPTURE(arguments);
     const Outcome outcome = leeway(arguments);
     CHECK(outcome.exit_code == 0);
@@ -73,7 +75,9 @@ TEST_CASE("wrong usage exits with 1 and one line that names what is wrong") {
     const char* named;
   } cases[] = {
       {"", "subcommand"},
-      {"fly", "fly"},
+      {"flie", "did you mean 'fuse'?"},
+      {"campaign --scene x --first-seed -1", "-1 not in range 0 to"},
+      {"campaign --scene x --limit -3", "-3 is not above 0"},
       {"drift --trials many", "--trials"},
       {"drift --trials 1", "trials"},
       {"drift --latitude 91", "latitude"},

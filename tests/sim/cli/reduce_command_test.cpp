@@ -16,15 +16,15 @@ std::string scene() {
 
 /// Two minutes of the defined case, fixes every 10 s.
 std::string reduce_model(const std::string& options) {
-  return "budget --scene " + scene() + " --interval-s 10 --at 120 --trials 3 --repeat 1 " + options;
+  return "reduce --scene " + scene() + " --interval-s 10 --at 120 --trials 3 --repeat 1 " + options;
 }
 
 }  // namespace
 
-TEST_CASE("budget --json --write: the contract, and a filter that campaign takes") {
+TEST_CASE("reduce --json --write: the contract, and a filter that campaign takes") {
   const TempDir dir;
   const auto object = leeway(reduce_model("--json --write " + quoted(dir / "f.toml"))).json();
-  CHECK(object.at("command") == "budget");
+  CHECK(object.at("command") == "reduce");
   CHECK(object.at("input").at("trials") == 3);
   const auto& results = object.at("results");
   CHECK(results.at("limit_m") == 10.0);
@@ -53,11 +53,11 @@ TEST_CASE("budget --json --write: the contract, and a filter that campaign takes
              " --interval-s 10 --at 120 --trials 3 --json --filter " + quoted(dir / "f.toml"));
   CHECK(campaign.exit_code == 0);
   const double rms_m = campaign.json().at("results").at("rms_horizontal_m");
-  const double in_budget_m = results.at("reduced").at("rms_horizontal_m");
-  CHECK(std::abs(rms_m - in_budget_m) < 1e-3);  // Ekf against BasicEkf: rounding
+  const double in_reduce_m = results.at("reduced").at("rms_horizontal_m");
+  CHECK(std::abs(rms_m - in_reduce_m) < 1e-3);  // Ekf against BasicEkf: rounding
 }
 
-TEST_CASE("budget prints every term with both figures and its cost, then the models") {
+TEST_CASE("reduce prints every term with both figures and its cost, then the models") {
   const Outcome outcome = leeway(reduce_model(""));
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.err.empty());
@@ -77,7 +77,7 @@ TEST_CASE("a limit that no model keeps is no answer, and writes nothing") {
   CHECK(!std::filesystem::exists(dir / "f.toml"));
 }
 
-TEST_CASE("budget and --filter refuse what they cannot do, and say what to do") {
+TEST_CASE("reduce and --filter refuse what they cannot do, and say what to do") {
   for (const char* options : {"--trials 0", "--repeat 0", "--threads -1", "--write"}) {
     CAPTURE(options);
     const Outcome outcome = leeway(reduce_model(options));

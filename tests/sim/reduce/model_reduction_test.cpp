@@ -67,7 +67,7 @@ Scene drive_scene() {
   scene.filter.lever_arm_b_m = scene.gnss.errors.lever_arm_b_m;
   scene.filter.gnss_correlation_s = scene.gnss.errors.correlation_time_s;
   scene.initial = InitialSigma{0.01, 0.02, 0.1, 1.5};
-  scene.budget = {HorizontalMetric::kDrms, 30.0, 60.0};
+  scene.limit = {HorizontalMetric::kDrms, 30.0, 60.0};
   scene.trials = 40;
   return scene;
 }
@@ -125,7 +125,7 @@ TEST_CASE("a late fix taken for new leaves speed times latency") {
   scene.gnss.interval_s = 1.0;
   scene.gnss.latency_s = 0.1;
   scene.initial = InitialSigma{1e-4, 1e-3, 0.05, 2.5};
-  scene.budget.last_s = 60.0;
+  scene.limit.last_s = 60.0;
   const TrialPlan plan(scene, {}, 1);
   const FilterModel full = full_model(scene);
   const TermPrediction prediction(plan, full);
@@ -173,7 +173,7 @@ TEST_CASE("every term of a drive: what is predicted is what trials show") {
     // the 20 % that are demanded.
     if (!std::isfinite(term.predicted_m)) continue;
     const double apart_m = std::abs(term.predicted_m - term.measured_m);
-    CHECK((apart_m <= 0.4 * term.measured_m || apart_m <= 0.01 * scene.budget.limit_m));
+    CHECK((apart_m <= 0.4 * term.measured_m || apart_m <= 0.01 * scene.limit.limit_m));
     if (!may_be_dropped(term.term)) CHECK(term.is_kept);
   }
   CHECK(seen.size() == result.terms.size());

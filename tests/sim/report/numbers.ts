@@ -138,12 +138,12 @@ function checkCampaign(results: unknown, tables: Tables): void {
   assert(median.every((error, i) => error > 0 && error <= (most[i] as number)));
 }
 
-interface BudgetResults {
+interface ReduceResults {
   readonly terms: readonly { readonly term: string; readonly measured_m: number; readonly kept: boolean }[];
 }
 
-function checkBudget(results: unknown, tables: Tables): void {
-  for (const { term, measured_m, kept } of (results as BudgetResults).terms) {
+function checkReduce(results: unknown, tables: Tables): void {
+  for (const { term, measured_m, kept } of (results as ReduceResults).terms) {
     const name = kept ? `${term} (kept)` : term;
     const bar = (tables.get("terms-error") ?? []).find((row) => Object.values(row).includes(name));
     assert.equal(numberIn(bar, "error without the term, m"), measured_m);
@@ -170,10 +170,10 @@ function checkAtlas(results: unknown, tables: Tables): void {
 export const kNumbers: Readonly<Record<string, Check>> = {
   analyze: checkAnalyze,
   atlas: checkAtlas,
-  budget: checkBudget,
   campaign: checkCampaign,
   compare: checkCompare,
   drift: checkDrift,
   fuse: checkFuse,
   interval: checkInterval,
+  reduce: checkReduce,
 };

@@ -107,8 +107,8 @@ TEST_CASE("a scene of the least keys has the defaults of the guide") {
   CHECK(scene.gnss.outlier_probability == 0.0);
   CHECK(scene.filter.gnss_correlation_s == 0.0);
   CHECK(scene.filter.gate_probability == 1e-6);
-  CHECK(scene.budget.metric == HorizontalMetric::kDrms);
-  CHECK(scene.budget.limit_m == 10.0);
+  CHECK(scene.limit.metric == HorizontalMetric::kDrms);
+  CHECK(scene.limit.limit_m == 10.0);
 }
 
 TEST_CASE("what a scene says arrives, in SI") {
@@ -152,7 +152,7 @@ tilt_mrad = 2
 heading_deg = 3
 velocity_mps = 0.5
 position_m = 4
-[budget]
+[limit]
 metric = "r95"
 limit_m = 25
 )");
@@ -194,8 +194,18 @@ limit_m = 25
   CHECK(near(scene.initial->heading_rad, 3.0 * kRadPerDeg, 1e-17));
   CHECK(scene.initial->velocity_mps == 0.5);
   CHECK(scene.initial->position_m == 4.0);
-  CHECK(scene.budget.metric == HorizontalMetric::kR95);
-  CHECK(scene.budget.limit_m == 25.0);
+  CHECK(scene.limit.metric == HorizontalMetric::kR95);
+  CHECK(scene.limit.limit_m == 25.0);
+}
+
+TEST_CASE("[budget] is read as the old name of [limit], with a note") {
+  const std::string text = kStill + kImu;
+  std::vector<std::string> notes;
+  CHECK(parse_scene(text + "[limit]\nlimit_m = 25\n", "s.toml", {}, &notes).limit.limit_m == 25.0);
+  CHECK(notes.empty());
+  CHECK(parse_scene(text + "[budget]\nlimit_m = 25\n", "s.toml", {}, &notes).limit.limit_m == 25.0);
+  REQUIRE(notes.size() == 1);
+  CHECK(notes.front() == "s.toml: [budget] is now called [limit]");
 }
 
 TEST_CASE("waypoints by latitude or by metres; what one leaves out is as at the one before") {
@@ -319,11 +329,12 @@ TEST_CASE("mistakes in a scene are refused with line, column and what was meant"
       {all + "[initial]\ntilt_deg = 200\nheading_deg = 1\nvelocity_mps = 1\nposition_m = 1\n",
        ":6:12", "'tilt_mrad'"},
       {all + "[initial]\ntilt_deg = 1\n", ":5:1", "needs heading_deg"},
-      {all + "[budget]\nmetric = \"cep\"\n", ":6:10", "drms"},
-      {all + "[budget]\nlimit_m = -3\n", ":6:11", "is -3"},
+      {all + "[limit]\nmetric = \"cep\"\n", ":6:10", "drms"},
+      {all + "[limit]\nlimit_m = -3\n", ":6:11", "is -3"},
       {"[scene]\ntrials = 0\n" + all, ":2:10", "from 1 to"},
       {"[scene]\nimu_rate_hz = 1e9\n" + all, ":2:15", "10000"},
       // Contradictions.
+      {all + "[limit]\nlimit_m = 3\n[budget]\nlimit_m = 3\n", ":7:", "old name of [limit]"},
       {kStill + "[imu]\n", ":3:1", "an IMU is one of"},
       {kStill + "[imu]\nclass = \"marine\"\nmodel = \"m.toml\"\n", ":3:1", "an IMU is one of"},
       {kStill + "[imu]\nclass = \"marine\"\n[imu.gyro]\nbias_sigma_deg_per_h = 1\n", ":3:1",

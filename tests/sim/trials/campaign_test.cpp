@@ -190,7 +190,7 @@ TEST_CASE("the journal of another scene is refused, whatever differs") {
   // What does not change a trial does not matter.
   Scene same = short_case(2);
   same.name = "renamed";
-  same.budget.limit_m = 3.0;
+  same.limit.limit_m = 3.0;
   CHECK(campaign(same, options).resumed == 1);
 }
 

@@ -1,6 +1,6 @@
 /// @file
 /// The correction interval: the longest time between fixes for which the error just before each of
-/// them stays within a budget. What Leeway exists to answer.
+/// them stays within a limit. What Leeway exists to answer.
 #pragma once
 
 #include <functional>

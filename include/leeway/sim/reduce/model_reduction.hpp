@@ -125,7 +125,7 @@ struct ReductionOptions {
   std::function<void(double fraction)> progress{};
 };
 
-/// The contribution of every term, and the cheapest model found that keeps scene.budget and stays
+/// The contribution of every term, and the cheapest model found that keeps scene.limit and stays
 /// honest; verified by scene.trials trials. Fixes come without outliers, and are not gated.
 /// @throws Error when scene or options are invalid, or a fix arrives after the next one is valid.
 ModelReduction reduce_model(const Scene& scene, const ReductionOptions& options = {});

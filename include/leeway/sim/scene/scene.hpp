@@ -28,7 +28,7 @@ struct GnssScenario {
 };
 
 /// The largest horizontal error allowed just before a fix is used.
-struct HorizontalBudget {
+struct ErrorLimit {
   HorizontalMetric metric{HorizontalMetric::kDrms};
   double limit_m{10.0};
   double last_s{480.0};  ///< fixes this close to the end of the scene count, as scored_part_s()
@@ -45,7 +45,7 @@ struct Scene {
   EkfConfig filter{};                     ///< what the filter believes
   int imu_divider{1};                     ///< so many increments are added to one for the filter
   std::optional<InitialSigma> initial{};  ///< absent: by levelling and gyrocompassing
-  HorizontalBudget budget{};
+  ErrorLimit limit{};
   int trials{200};
   std::uint64_t first_seed{1};  ///< trial k has seed first_seed + k
 };
@@ -61,7 +61,7 @@ void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model);
 /// 1e-5 rad and 10 deg), at the GNSS's own sigmas of velocity and horizontal position.
 InitialSigma initial_sigma(const Scene& scene);
 
-/// The last part of the scene, whose fixes count: budget.last_s, two fix intervals or a period of
+/// The last part of the scene, whose fixes count: limit.last_s, two fix intervals or a period of
 /// the trajectory, whichever is longest.
 double scored_part_s(const Scene& scene);
 

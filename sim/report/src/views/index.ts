@@ -2,20 +2,20 @@
 import type { MakeView } from "../view";
 import { analyzeView } from "./analyze";
 import { atlasView } from "./atlas";
-import { budgetView } from "./budget";
 import { campaignView } from "./campaign";
 import { compareView } from "./compare";
 import { driftView } from "./drift";
 import { fuseView } from "./fuse";
 import { intervalView } from "./interval";
+import { reduceView } from "./reduce";
 
 export const kViews: Readonly<Record<string, MakeView>> = {
   analyze: analyzeView,
   atlas: atlasView,
-  budget: budgetView,
   campaign: campaignView,
   compare: compareView,
   drift: driftView,
   fuse: fuseView,
   interval: intervalView,
+  reduce: reduceView,
 };

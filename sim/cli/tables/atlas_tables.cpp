@@ -1,9 +1,11 @@
-#include "sim/cli/pages/atlas_report.hpp"
+#include "sim/cli/tables/atlas_tables.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {

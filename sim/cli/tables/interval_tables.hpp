@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/cli/commands/interval_confirm.hpp"
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 

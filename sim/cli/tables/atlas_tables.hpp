@@ -7,7 +7,7 @@
 
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/atlas/atlas_expected.hpp"
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 

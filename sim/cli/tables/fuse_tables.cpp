@@ -1,10 +1,12 @@
-#include "sim/cli/pages/fuse_report.hpp"
+#include "sim/cli/tables/fuse_tables.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <limits>
+
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 #include <array>
 #include <bit>
@@ -40,60 +40,48 @@ Json column_json(const std::vector<double>& values, bool as_double) {
 
 }  // namespace
 
-ReportTable::ReportTable(std::vector<std::string> columns, Keep keep)
-    : names_(std::move(columns)), keep_(keep), least_(names_.size()), greatest_(names_.size()) {}
+SeriesTable::SeriesTable(std::vector<std::string> columns, Keep keep)
+    : names_(std::move(columns)), keep_(keep) {}
 
-void ReportTable::add(std::span<const double> row) {
+void SeriesTable::add(std::span<const double> row) {
+  const std::vector<double> values(row.begin(), row.end());
   if (in_last_ > 0) {
-    take_together(least_.front().size() - 1, row, row);
+    take_in(rows_.back(), {values, values});
   } else {
-    if (least_.front().size() == kMostRows) halve();
-    for (std::size_t c = 0; c < names_.size(); ++c) {
-      least_[c].push_back(row[c]);
-      greatest_[c].push_back(row[c]);
+    if (rows_.size() == kMostRows) {  // which is even, and the last is complete
+      for (std::size_t i = 0; 2 * i < kMostRows; ++i) {
+        if (i > 0) rows_[i] = std::move(rows_[2 * i]);
+        take_in(rows_[i], rows_[2 * i + 1]);
+      }
+      rows_.resize(kMostRows / 2);
+      together_ *= 2;
     }
+    rows_.push_back({values, values});
   }
   in_last_ = (in_last_ + 1) % together_;
 }
 
-void ReportTable::take_together(std::size_t into, std::span<const double> least,
-                                std::span<const double> greatest) {
+void SeriesTable::take_in(Row& row, const Row& next) const {
   if (keep_ == Keep::kFirst) return;
   for (std::size_t c = 1; c < names_.size(); ++c) {
     // Of a NaN and a number these are the number.
-    least_[c][into] = std::fmin(least_[c][into], least[c]);
-    greatest_[c][into] = std::fmax(greatest_[c][into], greatest[c]);
+    row.least[c] = std::fmin(row.least[c], next.least[c]);
+    row.greatest[c] = std::fmax(row.greatest[c], next.greatest[c]);
   }
 }
 
-/// @pre the last group is complete, and there are as many as kMostRows, which is even.
-void ReportTable::halve() {
-  const std::size_t half = kMostRows / 2;
-  std::vector<double> least(names_.size());
-  std::vector<double> greatest(names_.size());
-  for (std::size_t i = 0; i < half; ++i) {
-    for (std::size_t c = 0; c < names_.size(); ++c) {
-      least_[c][i] = least_[c][2 * i];
-      greatest_[c][i] = greatest_[c][2 * i];
-      least[c] = least_[c][2 * i + 1];
-      greatest[c] = greatest_[c][2 * i + 1];
-    }
-    take_together(i, least, greatest);
-  }
-  for (std::size_t c = 0; c < names_.size(); ++c) {
-    least_[c].resize(half);
-    greatest_[c].resize(half);
-  }
-  together_ *= 2;
-}
-
-Json ReportTable::json() const {
-  const bool is_short = together_ == 1 && least_.front().size() <= kShort;
+Json SeriesTable::json() const {
+  const bool is_short = together_ == 1 && rows_.size() <= kShort;
+  const auto column = [this](std::vector<double> Row::*side, std::size_t c) {
+    std::vector<double> values;
+    for (const Row& row : rows_) values.push_back((row.*side)[c]);
+    return values;
+  };
   Json columns = Json::object();
   for (std::size_t c = 0; c < names_.size(); ++c) {
-    columns[names_[c]] = column_json(least_[c], is_short || c == 0);
+    columns[names_[c]] = column_json(column(&Row::least, c), is_short || c == 0);
     if (together_ == 1 || c == 0 || keep_ == Keep::kFirst) continue;
-    columns[names_[c] + "_max"] = column_json(greatest_[c], false);
+    columns[names_[c] + "_max"] = column_json(column(&Row::greatest, c), false);
   }
   return {{"taken_together", together_}, {"columns", std::move(columns)}};
 }

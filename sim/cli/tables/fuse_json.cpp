@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "sim/cli/pages/fuse_report.hpp"
+#include "sim/cli/tables/fuse_tables.hpp"
 
 namespace leeway::cli {
 namespace {

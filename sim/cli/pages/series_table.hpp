@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "sim/cli/output.hpp"
+#include "sim/cli/json.hpp"
 
 namespace leeway::cli {
 
 /// Rows of numbers, at most kMostRows of them: once there are more, neighbours are taken together,
 /// two by two as often as it takes.
-class ReportTable {
+class SeriesTable {
  public:
   static constexpr std::size_t kMostRows = 16384;
 
@@ -23,29 +23,32 @@ class ReportTable {
     kFirst,     ///< the first row
   };
 
-  explicit ReportTable(std::vector<std::string> columns, Keep keep = Keep::kExtremes);
+  explicit SeriesTable(std::vector<std::string> columns, Keep keep = Keep::kExtremes);
 
   /// @pre as many values as columns. NaN: missing.
   void add(std::span<const double> row);
   void add(std::initializer_list<double> row) { add({row.begin(), row.size()}); }
 
-  bool empty() const { return least_.front().empty(); }
+  bool empty() const { return rows_.empty(); }
 
   /// {taken_together, columns: {name: {f64 or f32: base64 of little-endian numbers}}}. A column a
   /// has its greatest values in a_max. Double precision for the first column and short tables.
   Json json() const;
 
  private:
-  void halve();
-  void take_together(std::size_t into, std::span<const double> least,
-                     std::span<const double> greatest);
+  /// Rows taken together, by column.
+  struct Row {
+    std::vector<double> least{};
+    std::vector<double> greatest{};
+  };
+
+  void take_in(Row& row, const Row& next) const;
 
   std::vector<std::string> names_;
   Keep keep_;
-  std::vector<std::vector<double>> least_;     ///< by column
-  std::vector<std::vector<double>> greatest_;  ///< by column
+  std::vector<Row> rows_{};
   std::size_t together_{1};
-  std::size_t in_last_{0};  ///< rows in the last group; 0: it is complete
+  std::size_t in_last_{0};  ///< rows in the last of rows_; 0: it is complete
 };
 
 }  // namespace leeway::cli

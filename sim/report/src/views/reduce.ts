@@ -1,4 +1,4 @@
-/** leeway budget: what each term of the model is worth in a scene, and the cheapest filter. */
+/** leeway reduce: what each term of the model is worth in a scene, and the cheapest filter. */
 import type { Chart, Series } from "../chart";
 import type { Report } from "../report";
 import type { Grid, View } from "../view";
@@ -31,7 +31,7 @@ interface Results {
   readonly as_honest?: boolean;
 }
 
-export function budgetView(report: Report): View {
+export function reduceView(report: Report): View {
   const results = report.results as Results;
   const terms = [...results.terms].sort((a, b) => (b.measured_m ?? 0) - (a.measured_m ?? 0));
   return {

@@ -1,4 +1,4 @@
-#include "sim/cli/pages/report_table.hpp"
+#include "sim/cli/pages/series_table.hpp"
 
 #include <doctest/doctest.h>
 
@@ -39,7 +39,7 @@ std::vector<Number> numbers_in(const Json& column, const char* type) {
 }  // namespace
 
 TEST_CASE("report table: a short one is kept to the bit") {
-  ReportTable table({"t_s", "x_m"});
+  SeriesTable table({"t_s", "x_m"});
   const double none = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> x_m{0.1, -1e-300, 6378137.123456789, none};
   for (std::size_t k = 0; k < x_m.size(); ++k) table.add({static_cast<double>(k) / 3.0, x_m[k]});
@@ -57,7 +57,7 @@ TEST_CASE("report table: of a long one no peak is lost, and its size is bounded"
   constexpr int kRows = 1'440'000;  // two hours at 200 Hz
   constexpr int kUp = 777'777;
   constexpr int kDown = 1'000'001;
-  ReportTable table({"t_s", "x_m"});
+  SeriesTable table({"t_s", "x_m"});
   for (int k = 0; k < kRows; ++k) {
     table.add({k / 200.0, k == kUp ? 9.0 : k == kDown ? -8.0 : std::sin(k * 0.01)});
   }
@@ -66,8 +66,8 @@ TEST_CASE("report table: of a long one no peak is lost, and its size is bounded"
   const auto t_s = numbers_in<double>(json.at("columns").at("t_s"), "f64");
   const auto low = numbers_in<float>(json.at("columns").at("x_m"), "f32");
   const auto high = numbers_in<float>(json.at("columns").at("x_m_max"), "f32");
-  CHECK(t_s.size() <= ReportTable::kMostRows);
-  CHECK(t_s.size() > ReportTable::kMostRows / 2);
+  CHECK(t_s.size() <= SeriesTable::kMostRows);
+  CHECK(t_s.size() > SeriesTable::kMostRows / 2);
   REQUIRE(low.size() == t_s.size());
   REQUIRE(high.size() == t_s.size());
   CHECK(together * t_s.size() >= kRows);
@@ -80,8 +80,8 @@ TEST_CASE("report table: of a long one no peak is lost, and its size is bounded"
 
 TEST_CASE("report table: what is missing hides no number beside it") {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  ReportTable table({"t_s", "x_m"});
-  for (std::size_t k = 0; k <= ReportTable::kMostRows; ++k) {
+  SeriesTable table({"t_s", "x_m"});
+  for (std::size_t k = 0; k <= SeriesTable::kMostRows; ++k) {
     table.add({static_cast<double>(k), k % 2 == 0 ? none : 5.0});
   }
   const Json columns = table.json().at("columns");
@@ -91,7 +91,7 @@ TEST_CASE("report table: what is missing hides no number beside it") {
 }
 
 TEST_CASE("report table: first rows are rows") {
-  ReportTable table({"t_s", "x_m", "y_m"}, ReportTable::Keep::kFirst);
+  SeriesTable table({"t_s", "x_m", "y_m"}, SeriesTable::Keep::kFirst);
   for (int k = 0; k < 40'000; ++k) table.add({1.0 * k, 2.0 * k, -3.0 * k});
   const Json columns = table.json().at("columns");
   CHECK(columns.size() == 3);

@@ -1,4 +1,4 @@
-#include "sim/cli/pages/interval_report.hpp"
+#include "sim/cli/tables/interval_tables.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "leeway/sim/sensors/bias_model.hpp"
+#include "sim/cli/answer.hpp"
 #include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 
@@ -199,7 +200,7 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
   fmt::print(
       "Time without fixes from a perfect start / longest time between fixes, s, for a horizontal "
       "error ({}) below\n",
-      leeway::name(scene.budget.metric));
+      leeway::name(scene.limit.metric));
   print_answers(solved);
   print_conclusion(solved);
   print_optimism(solved);
@@ -216,7 +217,7 @@ Json interval_json(const std::vector<SolvedImu>& solved) {
       Json row = imu_json(imu.scene);
       row["motion"] = imu.scene.trajectory.name;
       row["bias_model"] = sim::name(sim::bias_model_of(imu.scene.imu));
-      row["metric"] = leeway::name(imu.scene.budget.metric);
+      row["metric"] = leeway::name(imu.scene.limit.metric);
       row["limit_m"] = a.limit_m;
       row["interval_s"] = a.interval_s;
       row["free_inertial_s"] = a.free_inertial_s;

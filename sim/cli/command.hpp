@@ -1,0 +1,49 @@
+/// @file
+/// The commands of the program. A file in commands/ that defines a Command is all that one takes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace leeway::cli {
+
+/// What the program exits with. kept in step with docs/guide/cli.md
+enum ExitCode : int {
+  kSuccess = 0,
+  kUnusable = 1,  ///< wrong usage or unusable input: nothing was computed
+  kNoAnswer = 2,  ///< finished, but no solution, or nothing to score it against
+  kFailure = 3,   ///< a result could not be written, or a defect of the program
+};
+
+/// Adds a command to the program. When run, it sets the exit code or throws.
+using AddCommand = std::function<void(CLI::App& program, int& exit_code)>;
+
+/// Every command by its name.
+inline std::map<std::string, AddCommand>& commands() {
+  static std::map<std::string, AddCommand> all;
+  return all;
+}
+
+/// A command, defined once at namespace scope: that puts it among commands().
+struct Command {
+  /// @param about        a line in the help of the program
+  /// @param footer       the end of the command's own help: remarks and examples
+  /// @param add_options  tells what the options are and where they go
+  /// @param run          gives the exit code, or throws
+  template <class Options>
+  Command(const char* name, const char* about, const char* footer,
+          void (*add_options)(CLI::App&, Options&), int (*run)(const Options&)) {
+    commands()[name] = [=](CLI::App& program, int& exit_code) {
+      CLI::App* app = program.add_subcommand(name, about);
+      const auto options = std::make_shared<Options>();
+      add_options(*app, *options);
+      app->footer(footer);
+      app->callback([run, options, &exit_code] { exit_code = run(*options); });
+    };
+  }
+};
+
+}  // namespace leeway::cli
