@@ -8,36 +8,30 @@
 namespace leeway::sim {
 namespace {
 
-struct TermWords {
-  std::string_view name;
-  std::string_view substitute;
-};
-
 // In the order of ModelTerm.
-constexpr std::array<TermWords, 22> kTermWords{{
-    {"earth_rotation", "no turn of the Earth in the attitude"},
-    {"coriolis", "no Coriolis"},
-    {"gravity_beyond_j2", "J2 gravity"},
-    {"gravity_beyond_constant", "constant gravity"},
-    {"gravity_gradient", "no gravity gradient in Phi"},
-    {"coning", "no coning"},
-    {"sculling", "no sculling"},
-    {"integration_order", "explicit Euler"},
-    {"imu_rate_half", "increments added in pairs"},
-    {"imu_rate_fifth", "increments added in fives"},
-    {"covariance_0_1_s", "P every 0.1 s"},
-    {"covariance_1_s", "P every 1 s"},
-    {"double_precision", "P in float"},
-    {"accelerometer_bias", "no such states"},
-    {"gyro_bias", "no such states"},
-    {"bias_decay", "biases walk at random"},
-    {"bias_drive", "biases are constant"},
-    {"lever_arm", "antenna at the IMU"},
-    {"latency", "fixes valid at arrival"},
-    {"scale_factors", "no filter models them"},
-    {"misalignments", "no filter models them"},
-    {"g_sensitivity", "no filter models it"},
-}};
+constexpr std::array<std::string_view, kAll<ModelTerm>.size()> kSubstitutes{
+    "no turn of the Earth in the attitude",
+    "no Coriolis",
+    "J2 gravity",
+    "constant gravity",
+    "no gravity gradient in Phi",
+    "no coning",
+    "no sculling",
+    "explicit Euler",
+    "increments added in pairs",
+    "increments added in fives",
+    "P every 0.1 s",
+    "P every 1 s",
+    "P in float",
+    "no such states",
+    "no such states",
+    "biases walk at random",
+    "biases are constant",
+    "antenna at the IMU",
+    "fixes valid at arrival",
+    "no filter models them",
+    "no filter models them",
+    "no filter models it"};
 
 bool has_gauss_markov(const Scene& scene) {
   const ProcessNoise noise = process_noise(scene.filter.imu);
@@ -194,11 +188,7 @@ void drop_of_input(ModelTerm term, FilterModel& model) {
 
 }  // namespace
 
-std::string_view name(ModelTerm term) { return kTermWords[static_cast<std::size_t>(term)].name; }
-
-std::string_view substitute(ModelTerm term) {
-  return kTermWords[static_cast<std::size_t>(term)].substitute;
-}
+std::string_view substitute(ModelTerm term) { return kSubstitutes[static_cast<std::size_t>(term)]; }
 
 std::vector<ErrorSource> sources_of(ModelTerm term) {
   switch (term) {

@@ -2,8 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
+#include <type_traits>
 
 #include "leeway/earth/error.hpp"
 #include "sim/scene/scene_sections.hpp"
@@ -12,29 +13,19 @@
 namespace leeway::sim {
 namespace {
 
-constexpr Quantity kGateProbability{"gate_probability", {}, zero_or(1e-15, 0.1)};
-constexpr Quantity kCovarianceInterval{"covariance_interval", kTimes, zero_or(1e-4, 10.0)};
-constexpr Quantity kGnssCorrelation{"gnss_correlation", kTimes, zero_or(0.1, 1e5)};
 constexpr std::int64_t kLargestDivider = 1000;
 
-// Each in the order of its enumeration.
-constexpr std::array<std::string_view, 8> kSchemeNames{
-    "explicit_euler", "semi_implicit_euler", "trapezoid", "one_sample",
-    "two_sample",     "runge_kutta_4",       "coning",    "sculling"};
-constexpr std::array<std::string_view, 3> kGravityNames{"constant", "j2", "normal"};
-constexpr std::array<std::string_view, 4> kBiasStateNames{"modelled", "random_walk", "constant",
-                                                          "none"};
+/// Numbers that a file may state, in fewer sizes than a filter can run with.
+struct Plausible {
+  std::string_view field{};
+  Range limits{};
+};
+constexpr std::array<Plausible, 3> kPlausible{{{"gate_probability", zero_or(1e-15, 0.1)},
+                                               {"covariance_interval_s", zero_or(1e-4, 10.0)},
+                                               {"gnss_correlation_s", zero_or(0.1, 1e5)}}};
 
-template <std::size_t N, class Value>
-void set_choice(TomlSection& section, std::string_view key,
-                const std::array<std::string_view, N>& names, Value& value) {
-  if (const auto index = section.choice(key, names)) value = static_cast<Value>(*index);
-}
-
-template <std::size_t N, class Value>
-std::string_view word_for(const std::array<std::string_view, N>& names, Value value) {
-  return names[static_cast<std::size_t>(value)];
-}
+/// What is told of a receiver, and not handed from scene to scene.
+constexpr std::array<std::string_view, 2> kOfTheScene{"gate_probability", "gnss_correlation_s"};
 
 bool has_turn(EarthRotation rotation) {
   return rotation == EarthRotation::kOn || rotation == EarthRotation::kTurnAlone;
@@ -49,26 +40,84 @@ EarthRotation earth_rotation_of(bool turn, bool coriolis) {
   return coriolis ? EarthRotation::kCoriolisAlone : EarthRotation::kOff;
 }
 
-void read_earth_rotation(TomlSection& section, EarthRotation& rotation) {
-  const auto both = section.boolean("earth_rotation");
-  const auto coriolis = section.boolean("coriolis");
-  rotation = earth_rotation_of(both.value_or(has_turn(rotation)),
-                               coriolis.value_or(both.value_or(has_coriolis(rotation))));
+/// Hands each field that [filter] has, with its key, to io. The IMU and the lever arm are told
+/// elsewhere in a scene.
+template <class T, class Io>
+void for_key(const Field<T>& field, Io& io) {
+  using Value = std::remove_const_t<T>;
+  if constexpr (std::is_same_v<Value, BiasState>) {
+    io(std::string(field.name) + "_bias", field);
+  } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
+    io(field.name, field);
+  } else if constexpr (!std::is_same_v<Value, ImuErrorModel> &&
+                       !std::is_same_v<Value, Eigen::Vector3d>) {
+    for_each_key(field.value, io);
+  }
 }
+
+template <class T, class Io>
+void for_each_key(T& config, Io& io) {
+  config.visit(config, [&io](const auto&... fields) { (for_key(fields, io), ...); });
+}
+
+class KeyReader {
+ public:
+  explicit KeyReader(TomlSection& section) : section_(section) {}
+
+  void operator()(std::string_view, const Field<double>& field) {
+    std::string_view key = field.name;
+    const bool is_time = key.ends_with("_s");
+    if (is_time) key.remove_suffix(2);
+    const auto* const known = std::find_if(kPlausible.begin(), kPlausible.end(),
+                                           [&](const auto& p) { return p.field == field.name; });
+    const Range& limits = known != kPlausible.end() ? known->limits : field.range;
+    set(section_, {key, is_time ? kTimes : decltype(kTimes){}, limits}, field.value);
+  }
+  void operator()(std::string_view key, const Field<bool>& field) {
+    field.value = section_.boolean(key).value_or(field.value);
+  }
+  void operator()(std::string_view, const Field<EarthRotation>& field) {
+    const auto both = section_.boolean("earth_rotation");
+    const auto coriolis = section_.boolean("coriolis");
+    field.value = earth_rotation_of(both.value_or(has_turn(field.value)),
+                                    coriolis.value_or(both.value_or(has_coriolis(field.value))));
+  }
+  template <NamedEnum Enum>
+  void operator()(std::string_view key, const Field<Enum>& field) {
+    field.value = section_.choice<Enum>(key).value_or(field.value);
+  }
+
+ private:
+  TomlSection& section_;
+};
+
+class KeyWriter {
+ public:
+  explicit KeyWriter(std::string& text) : text_(text) {}
+
+  template <class T>
+  void operator()(std::string_view key, const Field<T>& field) {
+    if (std::find(kOfTheScene.begin(), kOfTheScene.end(), key) != kOfTheScene.end()) return;
+    text_ += fmt::format("{} = {}\n", key, field.value);
+  }
+  void operator()(std::string_view, const Field<const EarthRotation>& field) {
+    text_ += fmt::format("earth_rotation = {}\ncoriolis = {}\n", has_turn(field.value),
+                         has_coriolis(field.value));
+  }
+  template <NamedEnum Enum>
+  void operator()(std::string_view key, const Field<const Enum>& field) {
+    text_ += fmt::format("{} = \"{}\"\n", key, name(field.value));
+  }
+
+ private:
+  std::string& text_;
+};
 
 }  // namespace
 
 void read_filter(TomlSection& section, Scene& scene) {
-  EkfConfig& filter = scene.filter;
-  set(section, kGateProbability, filter.gate_probability);
-  set(section, kCovarianceInterval, filter.covariance_interval_s);
-  set(section, kGnssCorrelation, filter.gnss_correlation_s);
-  set_choice(section, "scheme", kSchemeNames, filter.strapdown.scheme);
-  set_choice(section, "gravity", kGravityNames, filter.strapdown.gravity);
-  read_earth_rotation(section, filter.strapdown.rotation);
-  filter.gravity_gradient = section.boolean("gravity_gradient").value_or(filter.gravity_gradient);
-  set_choice(section, "accelerometer_bias", kBiasStateNames, filter.biases.accelerometer);
-  set_choice(section, "gyro_bias", kBiasStateNames, filter.biases.gyro);
+  KeyReader reader(section);
+  for_each_key(scene.filter, reader);
   scene.imu_divider = static_cast<int>(
       section.integer("imu_divider", 1, kLargestDivider).value_or(scene.imu_divider));
 }
@@ -88,17 +137,10 @@ std::string filter_file(const Scene& scene, std::string_view comment) {
     text += fmt::format("# {}\n", comment.substr(0, end));
     comment.remove_prefix(end == comment.npos ? comment.size() : end + 1);
   }
-  const EkfConfig& filter = scene.filter;
-  return text +
-         fmt::format(
-             "[filter]\nscheme = \"{}\"\ngravity = \"{}\"\nearth_rotation = {}\ncoriolis = {}\n"
-             "gravity_gradient = {}\ncovariance_interval_s = {}\naccelerometer_bias = \"{}\"\n"
-             "gyro_bias = \"{}\"\nimu_divider = {}\n",
-             word_for(kSchemeNames, filter.strapdown.scheme),
-             word_for(kGravityNames, filter.strapdown.gravity), has_turn(filter.strapdown.rotation),
-             has_coriolis(filter.strapdown.rotation), filter.gravity_gradient,
-             filter.covariance_interval_s, word_for(kBiasStateNames, filter.biases.accelerometer),
-             word_for(kBiasStateNames, filter.biases.gyro), scene.imu_divider);
+  text += "[filter]\n";
+  KeyWriter writer(text);
+  for_each_key(scene.filter, writer);
+  return text + fmt::format("imu_divider = {}\n", scene.imu_divider);
 }
 
 }  // namespace leeway::sim

@@ -24,11 +24,9 @@ struct PaperCell {
   double time_to_100m_s;
 };
 
-// [seed Table 2], in the order of kImuClasses
+// [seed Table 2], in the order of kAll<ImuClass>
 constexpr std::array<PaperCell, 5> kTable2{
     {{0.9, 980.0}, {3.1, 580.0}, {10.2, 325.0}, {87.3, 110.0}, {867.7, 35.0}}};
-
-constexpr std::array<std::string_view, 3> kReadingNames{"paper", "paper_assumptions", "complete"};
 
 void require(bool ok, const char* field, double value, const char* range) {
   if (!ok) {
@@ -163,25 +161,21 @@ DriftRow row_of(const DriftCurve& curve) {
 
 }  // namespace
 
-std::string_view name(DriftReading reading) {
-  return kReadingNames[static_cast<std::size_t>(reading)];
-}
-
 DriftStudy drift_study(const DriftConfig& config,
                        const std::function<void(double fraction)>& progress) {
   validate(config);
   const Rest rest(config);
-  constexpr std::size_t kCurvesPerClass = 1 + kRangeEnds.size();
+  constexpr std::size_t kCurvesPerClass = 1 + kAll<RangeEnd>.size();
   DriftStudy study;
-  study.curves.resize(kImuClasses.size() * kCurvesPerClass);
+  study.curves.resize(kAll<ImuClass>.size() * kCurvesPerClass);
   const std::size_t count = study.curves.size();
   parallel_for(
       count,
       [&](std::size_t k) {
-        const ImuClass imu = kImuClasses[k / kCurvesPerClass];
+        const ImuClass imu = kAll<ImuClass>[k / kCurvesPerClass];
         const std::size_t which = k % kCurvesPerClass;
         study.curves[k] = which == 0 ? paper_assumptions(rest, imu, config.max_time_s)
-                                     : complete(rest, imu, kRangeEnds[which - 1], config);
+                                     : complete(rest, imu, kAll<RangeEnd>[which - 1], config);
       },
       [&](std::size_t finished) {
         if (progress) progress(static_cast<double>(finished) / static_cast<double>(count));

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "leeway/covariance/transition.hpp"
+#include "leeway/earth/fields.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
@@ -40,10 +42,19 @@ enum class BiasState {
   kConstant,    ///< as uncertain at the start, and constant
   kNone,        ///< no bias: its state stays zero, and certain
 };
+constexpr auto names(BiasState) {
+  using enum BiasState;
+  return std::array{Named{kModelled, "modelled"}, Named{kRandomWalk, "random-walk"},
+                    Named{kConstant, "constant"}, Named{kNone, "none"}};
+}
 
 struct BiasStates {
   BiasState accelerometer{BiasState::kModelled};
   BiasState gyro{BiasState::kModelled};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"accelerometer", c.accelerometer}, Field{"gyro", c.gyro});
+  }
 };
 
 /// What the model means to the filter. An in-run bias without a turn-on part is a Gauss-Markov

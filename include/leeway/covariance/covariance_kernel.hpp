@@ -8,6 +8,7 @@
 
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/covariance/transition.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/measurement.hpp"
 
@@ -19,6 +20,10 @@ enum class KernelForm {
   kSymmetric,  ///< blocks of Phi, symmetric P (default)
   kUd,         ///< P = U D U^T
 };
+constexpr auto names(KernelForm) {
+  using enum KernelForm;
+  return std::array{Named{kDense, "dense"}, Named{kSymmetric, "symmetric"}, Named{kUd, "ud"}};
+}
 
 /// How the dense and the symmetric kernel take a measurement.
 enum class UpdateForm {
@@ -26,9 +31,17 @@ enum class UpdateForm {
   kJoseph,  ///< (I - K h) P (I - K h)^T + K K^T, row by row (default)
   kBatch,   ///< all rows at once, by the Cholesky factor of the innovation's covariance
 };
+constexpr auto names(UpdateForm) {
+  using enum UpdateForm;
+  return std::array{Named{kSimple, "simple"}, Named{kJoseph, "joseph"}, Named{kBatch, "batch"}};
+}
 
 /// What a kernel computes in, for programs that choose: long double is for references.
 enum class Precision { kFloat, kDouble };
+constexpr auto names(Precision) {
+  using enum Precision;
+  return std::array{Named{kFloat, "float"}, Named{kDouble, "double"}};
+}
 
 template <class Scalar>
 using CovarianceMatrix = Eigen::Matrix<Scalar, kErrorStates, kErrorStates>;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/log_summary.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
@@ -31,6 +32,11 @@ enum class GnssLogFormat {
   /// positive definite matrix only its diagonal is used.
   kRtklib,
 };
+constexpr auto names(GnssLogFormat) {
+  using enum GnssLogFormat;
+  return std::array{Named{kCsv, "CSV"}, Named{kKfGins, "KF-GINS text"},
+                    Named{kRtklib, "RTKLIB .pos"}};
+}
 
 struct GnssLogOptions {
   double position_sigma_scale{1.0};  ///< multiplies the log's standard deviations

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/log_summary.hpp"
 #include "leeway/sensors/imu.hpp"
@@ -20,6 +21,11 @@ enum class ImuLogFormat {
   kCsvIncrements,  ///< t_s, dt_s, dtheta_x_rad .. dtheta_z_rad, dv_x_mps .. dv_z_mps: lossless
   kKfGins,         ///< no header, blanks between: seconds of week, dtheta xyz (rad), dv xyz (m/s)
 };
+constexpr auto names(ImuLogFormat) {
+  using enum ImuLogFormat;
+  return std::array{Named{kCsvRates, "CSV, rates"}, Named{kCsvIncrements, "CSV, increments"},
+                    Named{kKfGins, "KF-GINS text"}};
+}
 
 struct ImuLogOptions {
   RateMeaning meaning{RateMeaning::kPoint};           ///< of kCsvRates

@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
@@ -22,9 +23,18 @@ enum class LineDamage {
   kOutOfRange,
   kTooLong,  ///< LineReader::kMaxLineBytes
 };
-inline constexpr std::size_t kLineDamageCount = 8;
-
-std::string_view name(LineDamage reason);
+constexpr auto names(LineDamage) {
+  using enum LineDamage;
+  return std::array{Named{kNotANumber, "not a number"},
+                    Named{kMissingField, "missing field"},
+                    Named{kNotFinite, "not finite"},
+                    Named{kTimeGoesBack, "time goes back"},
+                    Named{kDuplicateTime, "time repeated"},
+                    Named{kTimeJumpsAhead, "time jumps ahead of the lines after it"},
+                    Named{kOutOfRange, "out of range"},
+                    Named{kTooLong, "line too long"}};
+}
+inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 
 /// A damaged line costs that line, not the log.
 struct LogSummary {

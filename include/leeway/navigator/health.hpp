@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
@@ -36,6 +37,10 @@ struct Health {
   std::uint32_t realignments{0};  ///< of everything
 };
 
-std::string_view name(Health::State state);
-
+constexpr auto names(Health::State) {
+  using enum Health::State;
+  return std::array{Named{kAligning, "aligning"}, Named{kHeadingOpen, "heading_open"},
+                    Named{kAligned, "aligned"},   Named{kCoasting, "coasting"},
+                    Named{kGating, "gating"},     Named{kInconsistent, "inconsistent"}};
+}
 }  // namespace leeway

@@ -4,7 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
@@ -27,9 +28,25 @@ enum class Verdict : std::uint8_t {
   kImplausible,  ///< beyond what the sensor can measure, or not a covariance
   kOverflow,     ///< more measurements wait than there is room for
 };
+constexpr auto names(Verdict) {
+  using enum Verdict;
+  return std::array{Named{kAccepted, "accepted"},
+                    Named{kAligning, "aligning"},
+                    Named{kFused, "fused"},
+                    Named{kGated, "gated"},
+                    Named{kReset, "reset"},
+                    Named{kGap, "gap"},
+                    Named{kLate, "late"},
+                    Named{kDuplicate, "duplicate"},
+                    Named{kOutOfOrder, "out_of_order"},
+                    Named{kFuture, "future"},
+                    Named{kClockJump, "clock_jump"},
+                    Named{kUnused, "unused"},
+                    Named{kNotFinite, "not_finite"},
+                    Named{kImplausible, "implausible"},
+                    Named{kOverflow, "overflow"}};
+}
 
-inline constexpr std::size_t kVerdicts = 15;
-
-std::string_view name(Verdict verdict);
+inline constexpr std::size_t kVerdicts = kAll<Verdict>.size();
 
 }  // namespace leeway

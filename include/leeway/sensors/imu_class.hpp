@@ -2,29 +2,25 @@
 /// The five IMU classes of [seed Table 1].
 #pragma once
 
-#include <array>
-#include <string_view>
-
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway {
 
 enum class ImuClass { kMarine, kAviation, kIntermediate, kTactical, kAutomotive };
+constexpr auto names(ImuClass) {
+  using enum ImuClass;
+  return std::array{Named{kMarine, "marine"}, Named{kAviation, "aviation"},
+                    Named{kIntermediate, "intermediate"}, Named{kTactical, "tactical"},
+                    Named{kAutomotive, "automotive"}};
+}
 
 /// Where in a Table 1 range: its low end, geometric mean, or high end.
 enum class RangeEnd { kLow, kMid, kHigh };
-
-inline constexpr std::array kImuClasses{ImuClass::kMarine, ImuClass::kAviation,
-                                        ImuClass::kIntermediate, ImuClass::kTactical,
-                                        ImuClass::kAutomotive};
-inline constexpr std::array kRangeEnds{RangeEnd::kLow, RangeEnd::kMid, RangeEnd::kHigh};
-
-std::string_view name(ImuClass c);
-std::string_view name(RangeEnd end);
-
-/// @throws Error listing the known names.
-ImuClass imu_class_from_name(std::string_view name);
-RangeEnd range_end_from_name(std::string_view name);
+constexpr auto names(RangeEnd) {
+  using enum RangeEnd;
+  return std::array{Named{kLow, "low"}, Named{kMid, "mid"}, Named{kHigh, "high"}};
+}
 
 /// Biases are random constants with the Table 1 drift as their 1-sigma; no scale errors. A bound
 /// given as "< x" is read as the range x/4 to x, one given as "> x" as x alone.

@@ -7,6 +7,8 @@
 #include <array>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/earth/fields.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu.hpp"
 #include "leeway/strapdown/nav_state.hpp"
 
@@ -26,9 +28,25 @@ enum class Scheme {
   kConing,       ///< one sample + coning alone of what two samples add
   kSculling,     ///< one sample + sculling and position curvature alone
 };
+constexpr auto names(Scheme) {
+  using enum Scheme;
+  return std::array{Named{kExplicitEuler, "explicit-euler"},
+                    Named{kSemiImplicitEuler, "semi-implicit-euler"},
+                    Named{kTrapezoid, "trapezoid"},
+                    Named{kOneSample, "one-sample"},
+                    Named{kTwoSample, "two-sample"},
+                    Named{kRungeKutta4, "runge-kutta-4", "rk4"},
+                    Named{kConing, "coning"},
+                    Named{kSculling, "sculling"}};
+}
 
 /// Whether the Earth turns: rotation of the frame, which the attitude sees, and Coriolis.
 enum class EarthRotation { kOff, kOn, kTurnAlone, kCoriolisAlone };
+constexpr auto names(EarthRotation) {
+  using enum EarthRotation;
+  return std::array{Named{kOff, "still"}, Named{kOn, "turning"}, Named{kTurnAlone, "turn-alone"},
+                    Named{kCoriolisAlone, "coriolis-alone"}};
+}
 
 /// The recent past that a scheme looks back on. It survives a correction of the state, and is
 /// forgotten by itself when the next increment does not follow the last one.
@@ -66,6 +84,11 @@ struct StrapdownPolicy {
   Scheme scheme{Scheme::kTwoSample};
   GravityModel gravity{GravityModel::kNormal};
   EarthRotation rotation{EarthRotation::kOn};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"scheme", c.scheme}, Field{"gravity", c.gravity},
+                   Field{"rotation", c.rotation});
+  }
 };
 
 using StrapdownFunction = StrapdownStep (*)(NavState&, const ImuIncrement&, ImuHistory&);

@@ -59,7 +59,7 @@ std::string budget_csv(const sim::ErrorBudget& budget) {
     csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
                        horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
   };
-  for (const sim::BudgetLine& line : budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  for (const sim::BudgetLine& line : budget) add(name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   return csv;
 }

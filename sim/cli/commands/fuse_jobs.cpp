@@ -6,36 +6,17 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::cli {
 namespace {
 
-const char* format_name(ImuLogFormat format) {
-  switch (format) {
-    case ImuLogFormat::kCsvRates:
-      return "CSV, rates";
-    case ImuLogFormat::kCsvIncrements:
-      return "CSV, increments";
-    case ImuLogFormat::kKfGins:
-      break;
-  }
-  return "KF-GINS text";
-}
-
-const char* format_name(GnssLogFormat format) {
-  switch (format) {
-    case GnssLogFormat::kCsv:
-      return "CSV";
-    case GnssLogFormat::kKfGins:
-      return "KF-GINS text";
-    case GnssLogFormat::kRtklib:
-      break;
-  }
-  return "RTKLIB .pos";
-}
-
-std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+/// Calls f(name, value) for each switch of the vehicle aiding.
+template <class F>
+void for_each_part(VehicleConfig& vehicle, const F& f) {
+  walk_fields(vehicle, [&f](const FieldPath& path, auto& value, const Range&) {
+    if constexpr (std::is_same_v<decltype(value), bool&>) f(path.name, value);
+  });
 }
 
 /// C_bs of a mount; without one the sensor axes are the body axes.
@@ -59,10 +40,10 @@ void inspect(FuseJob& job) {
   const sim::ReplayInput& in = job.input;
   job.imu_format = job.gnss_format = "stream";
   if (can_be_read_twice(in.imu)) {
-    job.imu_format = format_name(ImuLogReader(in.imu, in.imu_options).format());
+    job.imu_format = name(ImuLogReader(in.imu, in.imu_options).format());
   }
   if (can_be_read_twice(in.gnss)) {
-    job.gnss_format = format_name(GnssLogReader(in.gnss, in.gnss_options).format());
+    job.gnss_format = name(GnssLogReader(in.gnss, in.gnss_options).format());
   }
   if (!in.odometer.empty() && can_be_read_twice(in.odometer)) {
     ScalarLogReader{in.odometer, sim::odometer_columns()};
@@ -76,8 +57,7 @@ void inspect(FuseJob& job) {
 FuseJob job_with_options(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
   FuseJob job;
-  job.input.imu_options.meaning =
-      static_cast<RateMeaning>(index_of(rate_meaning_names(), logs.rate_meaning));
+  job.input.imu_options.meaning = logs.rate_meaning;
   if (logs.gnss_sigma_scale) {
     job.input.gnss_options.position_sigma_scale = logs.gnss_sigma_scale->x();
     job.input.gnss_options.velocity_sigma_scale = logs.gnss_sigma_scale->y();
@@ -140,31 +120,23 @@ FuseJob job_of_drive(const FuseOptions& options, const std::filesystem::path& fo
 
 }  // namespace
 
-const std::vector<std::string>& rate_meaning_names() {
-  static const std::vector<std::string> names{"mean", "point", "held"};
-  return names;
-}
-
-const std::vector<std::string>& scheme_names() {
-  static const std::vector<std::string> names{"explicit-euler", "semi-implicit-euler", "trapezoid",
-                                              "one-sample",     "two-sample",          "rk4"};
-  return names;
-}
-
-const std::vector<std::string>& vehicle_part_names() {
-  static const std::vector<std::string> names{"zero-velocity", "zero-angular-rate", "non-holonomic",
-                                              "odometer", "barometer"};
+std::vector<std::string> vehicle_part_names() {
+  std::vector<std::string> names;
+  VehicleConfig vehicle;
+  for_each_part(vehicle, [&names](std::string name, bool&) {
+    std::replace(name.begin(), name.end(), '_', '-');
+    names.push_back(std::move(name));
+  });
   return names;
 }
 
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
   if (vehicle.name == "none") return {};
   VehicleConfig config = VehicleConfig::car();
-  bool* const parts[] = {&config.zero_velocity, &config.zero_angular_rate, &config.non_holonomic,
-                         &config.odometer, &config.barometer};
-  for (const std::string& part : vehicle.without) {
-    *parts[index_of(vehicle_part_names(), part)] = false;
-  }
+  for_each_part(config, [&vehicle](std::string_view name, bool& is_on) {
+    is_on = std::none_of(vehicle.without.begin(), vehicle.without.end(),
+                         [name](const auto& part) { return is_same_name(part, name); });
+  });
   return config;
 }
 
@@ -175,7 +147,6 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
   config.timing = options.timing;
   config.vehicle = vehicle_config(options.vehicle);
   config.filter.imu = imu;
-  config.filter.strapdown.scheme = static_cast<Scheme>(index_of(scheme_names(), options.scheme));
   if (options.lever_arm_b_m) config.filter.lever_arm_b_m = *options.lever_arm_b_m;
   static_cast<void>(Navigator(config));  // refuses what cannot be
   return config;

@@ -23,7 +23,7 @@ using sim::Triad;
 
 struct ImuOptions {
   std::string name{};
-  std::string range{"mid"};
+  RangeEnd range{RangeEnd::kMid};
   bool json{false};
 };
 
@@ -225,7 +225,7 @@ int run(const ImuOptions& options) {
   }
   const Shown s = shown(options);
   if (options.json) {
-    print_json("imu", {{"name", options.name}, {"range", options.range}}, shown_json(s));
+    print_json("imu", {{"name", options.name}, {"range", name(options.range)}}, shown_json(s));
   } else {
     print_report(s);
   }

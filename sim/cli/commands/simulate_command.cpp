@@ -1,8 +1,8 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <array>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -29,7 +29,7 @@ struct GnssOptions {
 
 struct SimulateOptions {
   std::filesystem::path scene{};  ///< in place of the options from here ..
-  std::string trajectory{};
+  std::optional<sim::TrajectoryKind> trajectory{};
   double duration_s{600.0};
   double imu_rate_hz{200.0};
   ImuChoice imu{};
@@ -51,14 +51,10 @@ Factory factory(sim::Trajectory (*make)(const Parameters&)) {
   };
 }
 
-const std::map<std::string, Factory>& factories() {
-  static const std::map<std::string, Factory> all{{"static", factory(sim::static_trajectory)},
-                                                  {"straight", factory(sim::straight)},
-                                                  {"circle", factory(sim::circle)},
-                                                  {"square-loop", factory(sim::square_loop)},
-                                                  {"car", factory(sim::car_drive)}};
-  return all;
-}
+// In the order of TrajectoryKind; the rest of them need a scene file.
+const std::array<Factory, 5> kFactories{factory(sim::static_trajectory), factory(sim::straight),
+                                        factory(sim::circle), factory(sim::square_loop),
+                                        factory(sim::car_drive)};
 
 sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
   const GnssOptions& g = o.gnss;
@@ -74,8 +70,9 @@ sim::GnssErrorModel gnss_model(const SimulateOptions& o) {
 sim::Scene scene_from_options(const SimulateOptions& options) {
   const NamedImu imu = imu_of(options.imu);
   sim::Scene scene;
-  scene.name = options.trajectory;
-  scene.trajectory = factories().at(options.trajectory)(options.duration_s);
+  scene.name = name(*options.trajectory);
+  scene.trajectory =
+      kFactories.at(static_cast<std::size_t>(*options.trajectory))(options.duration_s);
   scene.duration_s = options.duration_s;
   scene.imu_rate_hz = options.imu_rate_hz;
   set_imu(scene, imu.name, imu.model);
@@ -86,7 +83,7 @@ sim::Scene scene_from_options(const SimulateOptions& options) {
 
 Json options_json(const SimulateOptions& options, const sim::Scene& scene) {
   const GnssOptions& g = options.gnss;
-  return {{"trajectory", options.trajectory},
+  return {{"trajectory", name(*options.trajectory)},
           {"duration_s", options.duration_s},
           {"imu_rate_hz", options.imu_rate_hz},
           {"imu_model", scene.imu_name},
@@ -131,7 +128,7 @@ void print_report(const SimulateOptions& options, const sim::Scene& scene, const
 }
 
 int run(SimulateOptions options) {
-  if (options.scene.empty() && options.trajectory.empty()) {
+  if (options.scene.empty() && !options.trajectory) {
     throw Error("simulate: give --scene FILE.toml or --trajectory NAME");
   }
   const sim::Scene scene =
@@ -181,10 +178,8 @@ void add_simulate_command(CLI::App& program, int& exit_code) {
   CLI::App* app = program.add_subcommand(
       "simulate", "Make IMU, GNSS and truth logs of a drive, for leeway fuse to read");
   const auto options = std::make_shared<SimulateOptions>();
-  std::vector<std::string> trajectories;
-  for (const auto& [name, make] : factories()) trajectories.push_back(name);
   app->add_option("--trajectory", options->trajectory, "the motion")
-      ->check(CLI::IsMember(trajectories));
+      ->transform(named<sim::TrajectoryKind>(kFactories.size()));
   app->add_option("--duration-s", options->duration_s, "length, s")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();

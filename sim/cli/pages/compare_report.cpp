@@ -25,7 +25,7 @@ std::string number_of(const std::optional<std::size_t>& index) {
 std::string outcome_of(const sim::Accuracy& accuracy) {
   const sim::Consistency consistency = sim::consistency_of(accuracy);
   const sim::CampaignResult& r = accuracy.figures;
-  const std::string word(sim::name(consistency));
+  const std::string word(name(consistency));
   if (consistency == sim::Consistency::kNotFinite) {
     return fmt::format("{}: {} of {}", word, r.not_finite, r.trials);
   }
@@ -106,7 +106,7 @@ Json comparison_json(const sim::Comparison& comparison) {
                     {"r95_m", c.accuracy.r95_m},
                     {"nees", nees_of(c.accuracy)},
                     {"nees_band", {r.nees_low, r.nees_high}},
-                    {"consistency", sim::name(sim::consistency_of(c.accuracy))},
+                    {"consistency", name(sim::consistency_of(c.accuracy))},
                     {"trials_diverged", r.diverged},
                     {"trials_not_finite", r.not_finite},
                     {"front", c.on_front},
@@ -125,8 +125,8 @@ std::string comparison_csv(const sim::Comparison& comparison) {
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", c.name,
                        cell(c.cost.median_ns_per_s), cell(c.cost.least_ns_per_s),
                        cell(c.cost.most_ns_per_s), cell(r.rms_horizontal_m), cell(c.accuracy.r95_m),
-                       cell(nees_of(c.accuracy)), sim::name(sim::consistency_of(c.accuracy)),
-                       r.diverged, r.not_finite, c.on_front ? 1 : 0,
+                       cell(nees_of(c.accuracy)), name(sim::consistency_of(c.accuracy)), r.diverged,
+                       r.not_finite, c.on_front ? 1 : 0,
                        c.dominated_by ? comparison.variants[*c.dominated_by].name : "");
   }
   return csv;

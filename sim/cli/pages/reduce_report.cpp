@@ -37,7 +37,7 @@ void print_terms(const sim::ModelReduction& budget) {
   Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark",
                "diverged", "cost, ns/s", "<in the reduced model"});
   for (const sim::TermWorth& term : budget.terms) {
-    table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
+    table.add({std::string(name(term.term)), std::string(sim::substitute(term.term)),
                number(term.predicted_m, 5), number(term.measured_m, 5),
                number(term.predicted_m / term.measured_m, 2),
                remark(term, budget.scene.budget.limit_m), fmt::format("{}", term.diverged),
@@ -108,7 +108,7 @@ Json model_budget_json(const sim::ModelReduction& budget) {
   const double limit_m = budget.scene.budget.limit_m;
   Json terms = Json::array();
   for (const sim::TermWorth& term : budget.terms) {
-    terms.push_back({{"term", sim::name(term.term)},
+    terms.push_back({{"term", name(term.term)},
                      {"substitute", sim::substitute(term.term)},
                      {"predicted_m", term.predicted_m},
                      {"measured_m", term.measured_m},

@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
-#include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
@@ -35,8 +35,24 @@ enum class ErrorSource {
   kGnssCorrelated,    ///< Gauss-Markov, of position
   kGnssVelocity,      ///< white
 };
-
-std::string_view name(ErrorSource source);
+constexpr auto names(ErrorSource) {
+  using enum ErrorSource;
+  return std::array{Named{kInitial, "initial"},
+                    Named{kAccelerometerBias, "accelerometer_bias"},
+                    Named{kAccelerometerDrift, "accelerometer_drift"},
+                    Named{kAccelerometerNoise, "accelerometer_noise"},
+                    Named{kAccelerometerScale, "accelerometer_scale"},
+                    Named{kAccelerometerMisalignment, "accelerometer_misalignment"},
+                    Named{kGyroBias, "gyro_bias"},
+                    Named{kGyroDrift, "gyro_drift"},
+                    Named{kGyroNoise, "gyro_noise"},
+                    Named{kGyroScale, "gyro_scale"},
+                    Named{kGyroMisalignment, "gyro_misalignment"},
+                    Named{kGyroGSensitivity, "gyro_g_sensitivity"},
+                    Named{kGnssPosition, "gnss_position"},
+                    Named{kGnssCorrelated, "gnss_correlated"},
+                    Named{kGnssVelocity, "gnss_velocity"}};
+}
 
 /// What one source contributes.
 struct BudgetLine {

@@ -9,9 +9,16 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
+
 namespace leeway::sim {
 
 enum class AtlasVerdict { kSurvives, kDegrades, kFails };
+constexpr auto names(AtlasVerdict) {
+  using enum AtlasVerdict;
+  return std::array{Named{kSurvives, "survives"}, Named{kDegrades, "degrades"},
+                    Named{kFails, "fails"}};
+}
 
 /// What a variant is of: the columns of the matrix of all scenes.
 enum class AtlasGroup {
@@ -25,10 +32,14 @@ enum class AtlasGroup {
   kInput,       ///< what stands before any filter: configuration, readers, time
   kNotOffered,  ///< a method that the library does not have: what the scene shows failing
 };
-inline constexpr std::size_t kAtlasGroups = 9;
-
-std::string_view name(AtlasVerdict verdict);
-std::string_view name(AtlasGroup group);
+constexpr auto names(AtlasGroup) {
+  using enum AtlasGroup;
+  return std::array{Named{kNavigator, "Navigator"},          Named{kEkf, "Ekf"},
+                    Named{kDoubleKernel, "kernels, double"}, Named{kFloatKernel, "kernels, float"},
+                    Named{kInvariant, "invariant EKF"},      Named{kReset, "reset"},
+                    Named{kStrapdown, "strapdown"},          Named{kInput, "input"},
+                    Named{kNotOffered, "not offered"}};
+}
 
 /// One variant under one condition of a scene.
 struct AtlasCell {

@@ -2,10 +2,21 @@
 /// Ready trajectories: the motions of the studies, and two of the reference vectors.
 #pragma once
 
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
 
 namespace leeway::sim {
+
+/// The motions that a study can ask for. The first five have no end of their own.
+enum class TrajectoryKind { kStatic, kStraight, kCircle, kSquareLoop, kCar, kWaypoints, kRecorded };
+constexpr auto names(TrajectoryKind) {
+  using enum TrajectoryKind;
+  return std::array{Named{kStatic, "static"},    Named{kStraight, "straight"},
+                    Named{kCircle, "circle"},    Named{kSquareLoop, "square-loop"},
+                    Named{kCar, "car"},          Named{kWaypoints, "waypoints"},
+                    Named{kRecorded, "recorded"}};
+}
 
 inline constexpr Geodetic kDefaultOrigin{45.0 * kRadPerDeg, 37.6 * kRadPerDeg, 100.0};
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/sim/compare/compare.hpp"
 #include "leeway/sim/scene/scene.hpp"
 
@@ -39,8 +40,31 @@ enum class ModelTerm {
   kMisalignments,      ///< likewise
   kGSensitivity,       ///< of the gyros, likewise
 };
-
-std::string_view name(ModelTerm term);
+constexpr auto names(ModelTerm) {
+  using enum ModelTerm;
+  return std::array{Named{kEarthTurn, "earth_rotation"},
+                    Named{kCoriolis, "coriolis"},
+                    Named{kNormalGravity, "gravity_beyond_j2"},
+                    Named{kJ2, "gravity_beyond_constant"},
+                    Named{kGravityGradient, "gravity_gradient"},
+                    Named{kConing, "coning"},
+                    Named{kSculling, "sculling"},
+                    Named{kSecondOrder, "integration_order"},
+                    Named{kFullRate, "imu_rate_half"},
+                    Named{kFifthRate, "imu_rate_fifth"},
+                    Named{kEachCovariance, "covariance_0_1_s"},
+                    Named{kTenthCovariance, "covariance_1_s"},
+                    Named{kDoublePrecision, "double_precision"},
+                    Named{kAccelerometerBias, "accelerometer_bias"},
+                    Named{kGyroBias, "gyro_bias"},
+                    Named{kBiasDecay, "bias_decay"},
+                    Named{kBiasDrive, "bias_drive"},
+                    Named{kLeverArm, "lever_arm"},
+                    Named{kLatency, "latency"},
+                    Named{kScaleFactors, "scale_factors"},
+                    Named{kMisalignments, "misalignments"},
+                    Named{kGSensitivity, "g_sensitivity"}};
+}
 
 /// What the filter does without the term.
 std::string_view substitute(ModelTerm term);

@@ -2,9 +2,7 @@
 /// What a bias does after turn-on: two readings of the same datasheet figure.
 #pragma once
 
-#include <array>
-#include <string_view>
-
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway::sim {
@@ -13,14 +11,12 @@ enum class BiasModel {
   kConstant,     ///< stays what it was at turn-on
   kGaussMarkov,  ///< wanders, with the same sigma at every moment
 };
+constexpr auto names(BiasModel) {
+  using enum BiasModel;
+  return std::array{Named{kConstant, "constant"}, Named{kGaussMarkov, "gauss_markov"}};
+}
 
-inline constexpr std::array kBiasModels{BiasModel::kConstant, BiasModel::kGaussMarkov};
 inline constexpr double kBiasTauS = 3600.0;  ///< of the wandering, where nothing else is said
-
-std::string_view name(BiasModel model);
-
-/// @throws Error listing the known names.
-BiasModel bias_model_from_name(std::string_view name);
 
 /// kGaussMarkov where the model has an in-run drift.
 BiasModel bias_model_of(const ImuErrorModel& model);

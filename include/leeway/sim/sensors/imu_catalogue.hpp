@@ -7,12 +7,17 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/units.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway::sim {
 
 enum class Triad { kAccelerometer, kGyro };
+constexpr auto names(Triad) {
+  using enum Triad;
+  return std::array{Named{kAccelerometer, "accelerometer"}, Named{kGyro, "gyro"}};
+}
 
 /// The numbers of an error model that a datasheet can fill.
 enum class ModelField {
@@ -24,6 +29,16 @@ enum class ModelField {
   kMisalignmentSigma,
   kGSensitivitySigma  ///< of the gyro only
 };
+constexpr auto names(ModelField) {
+  using enum ModelField;
+  return std::array{Named{kBiasSigma, "bias_sigma"},
+                    Named{kInRunSigma, "in_run_sigma"},
+                    Named{kInRunTau, "in_run_tau"},
+                    Named{kNoise, "noise"},
+                    Named{kScaleSigma, "scale_sigma"},
+                    Named{kMisalignmentSigma, "misalignment_sigma"},
+                    Named{kGSensitivitySigma, "g_sensitivity_sigma"}};
+}
 
 /// What a printed number is, which decides how it becomes the field (see sigma_of).
 enum class Meaning {
@@ -32,6 +47,11 @@ enum class Meaning {
   kAllanMinimum,  ///< in-run bias (in)stability: the lowest point of the Allan deviation
   kAssumed        ///< printed nowhere: stands in so that the model is not too good
 };
+constexpr auto names(Meaning) {
+  using enum Meaning;
+  return std::array{Named{kSigma, ""}, Named{kMaximum, "maximum"},
+                    Named{kAllanMinimum, "Allan minimum"}, Named{kAssumed, "assumed"}};
+}
 
 /// One printed number and the field it fills.
 struct DatasheetValue {
@@ -53,6 +73,11 @@ struct DatasheetValue {
 inline constexpr double kAllanPeak = 0.6173642831444414;
 
 enum class Grade { kConsumer, kIndustrial, kTactical, kNavigation };
+constexpr auto names(Grade) {
+  using enum Grade;
+  return std::array{Named{kConsumer, "consumer"}, Named{kIndustrial, "industrial"},
+                    Named{kTactical, "tactical"}, Named{kNavigation, "navigation"}};
+}
 
 struct ImuPart {
   std::string_view name{};
@@ -63,11 +88,6 @@ struct ImuPart {
   std::string_view checked{};     ///< which of the numbers were compared with a copy of it
   std::span<const DatasheetValue> values{};
 };
-
-std::string_view name(Triad triad);
-std::string_view name(ModelField field);  ///< as in a model file: "bias_sigma"
-std::string_view name(Meaning meaning);
-std::string_view name(Grade grade);
 
 /// All parts, from the least to the most accurate.
 std::span<const ImuPart> imu_parts();
