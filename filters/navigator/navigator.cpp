@@ -47,8 +47,7 @@ double seconds_since(const std::optional<Time>& then, const std::optional<Time>&
 
 void validate(const NavigatorConfig& config) {
   validate_fields("navigator", config);
-  require("navigator", {nullptr, "max_jump_s"}, {&config.max_jump_s, 1},
-          between(config.max_gap_s, 1e5));
+  require("navigator", "max_jump_s", config.max_jump_s, between(config.max_gap_s, 1e5));
   if (config.C_bs && !((*config.C_bs * config.C_bs->transpose() - Eigen::Matrix3d::Identity())
                                .cwiseAbs()
                                .maxCoeff() < 1e-6 &&

@@ -45,8 +45,11 @@ constexpr std::size_t count_listed() {
 
 /// Where a field is: "in_run.tau_s".
 struct FieldPath {
-  const FieldPath* owner;
+  FieldPath(const char* its_name, const FieldPath* its_owner = nullptr)  // NOLINT(*-explicit-*)
+      : name(its_name), owner(its_owner) {}
+
   const char* name;
+  const FieldPath* owner;
 
   std::string_view root() const { return owner != nullptr ? owner->root() : name; }
   std::string text() const { return (owner != nullptr ? owner->text() + "." : "") + name; }
@@ -65,7 +68,7 @@ void walk_field(NoData, const Leaf&, const FieldPath*) {}
 /// Whether an optional is there, and how many a vector holds, come before what they hold.
 template <class T, class Leaf>
 void walk_field(const Field<T>& field, const Leaf& leaf, const FieldPath* owner) {
-  const FieldPath path{owner, field.name};
+  const FieldPath path(field.name, owner);
   if constexpr (FieldLeaf<std::remove_const_t<T>>) {
     leaf(path, field.value, field.range);
   } else if constexpr (requires { field.value.has_value(); }) {
@@ -90,20 +93,17 @@ void walk_fields(T& config, const Leaf& leaf, const FieldPath* owner) {
 }
 
 /// Makes no message, which would need the heap, unless one is needed.
-/// @throws Error "owner: field is value, must be range" for the first value out of its range.
-void require(const char* owner, const FieldPath& path, std::span<const double> values,
-             const Range& range);
+/// @throws Error "owner: field is value, must be range" for a value out of its range.
+void require(const char* owner, const FieldPath& path, double value, const Range& range);
 
 /// @throws Error for the first number that is out of its range.
 template <class T>
 void validate_fields(const char* owner, const T& config) {
   walk_fields(config, [owner](const FieldPath& path, const auto& value, const Range& range) {
-    using Value = std::remove_cvref_t<decltype(value)>;
-    if constexpr (std::is_arithmetic_v<Value>) {
-      const auto number = static_cast<double>(value);
-      require(owner, path, {&number, 1}, range);
+    if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+      require(owner, path, static_cast<double>(value), range);
     } else if constexpr (requires { value.allFinite(); }) {
-      require(owner, path, {value.data(), static_cast<std::size_t>(value.size())}, range);
+      for (const double element : value.reshaped()) require(owner, path, element, range);
     }
   });
 }

@@ -1,6 +1,5 @@
 #include "leeway/earth/fields.hpp"
 
-#include <cmath>
 #include <sstream>
 
 #include "leeway/earth/error.hpp"
@@ -22,14 +21,11 @@ std::string Range::text() const {
   return text.str();
 }
 
-void require(const char* owner, const FieldPath& path, std::span<const double> values,
-             const Range& range) {
-  for (const double value : values) {
-    if (range.contains(value)) continue;
-    std::ostringstream message;
-    message << owner << ": " << path.text() << " is " << value << ", must be " << range.text();
-    throw Error(message.str());
-  }
+void require(const char* owner, const FieldPath& path, double value, const Range& range) {
+  if (range.contains(value)) return;
+  std::ostringstream message;
+  message << owner << ": " << path.text() << " is " << value << ", must be " << range.text();
+  throw Error(message.str());
 }
 
 }  // namespace leeway

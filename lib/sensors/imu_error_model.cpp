@@ -25,7 +25,7 @@ double integral_variance(double a) {
 }  // namespace
 
 GaussMarkovStep discretize(const GaussMarkov& process, double dt_s) {
-  require("Gauss-Markov process", {nullptr, "dt_s"}, {&dt_s, 1}, kPositive);
+  require("Gauss-Markov process", "dt_s", dt_s, kPositive);
   validate_fields("Gauss-Markov process", process);
   GaussMarkovStep step;
   if (std::isinf(process.tau_s)) {

@@ -57,7 +57,7 @@ void note_spelling(const std::string& word, std::string_view name) {
 bool is_imu_class(const std::string& imu) { return imu == kMems || from_name<ImuClass>(imu); }
 
 void add_imu_options(CLI::App& app, ImuChoice& choice) {
-  std::vector<std::string> names(kWords<ImuClass>.begin(), kWords<ImuClass>.end());
+  std::vector<std::string> names(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
   names.emplace(names.begin(), kMems);
   CLI::Option* by_class =
       app.add_option("--imu-class", choice.name,

@@ -33,7 +33,7 @@ void note_spelling(const std::string& word, std::string_view name);
 /// Takes a word for the enumerator that it names, one of the first `count`.
 template <NamedEnum Enum>
 CLI::Validator named(std::size_t count = kAll<Enum>.size()) {
-  const auto words = std::span(kWords<Enum>).first(count);
+  const auto words = std::span(kNames<Enum>).first(count);
   const std::string accepted = fmt::format("{{{}}}", fmt::join(words, ","));
   const auto parse = [count, accepted](std::string& word) {
     const std::optional<Enum> value = from_name<Enum>(word);

@@ -26,7 +26,7 @@ NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
     return imu_of(imu);
   } catch (const Error& error) {
     throw Error(fmt::format("--imu {}: no class (automotive-mems, {}) and no part: {}", wanted,
-                            fmt::join(kWords<ImuClass>, ", "), error.what()));
+                            fmt::join(kNames<ImuClass>, ", "), error.what()));
   }
 }
 

@@ -227,8 +227,7 @@ bool may_be_dropped(ModelTerm term) {
 
 std::vector<ModelTerm> terms_of(const Scene& scene) {
   std::vector<ModelTerm> terms;
-  for (std::size_t i = 0; i < kTermWords.size(); ++i) {
-    const auto term = static_cast<ModelTerm>(i);
+  for (const ModelTerm term : kAll<ModelTerm>) {
     if (means_something(term, scene)) terms.push_back(term);
   }
   return terms;

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
 
@@ -15,17 +16,12 @@ namespace {
 
 constexpr std::int64_t kLargestDivider = 1000;
 
-/// Numbers that a file may state, in fewer sizes than a filter can run with.
-struct Plausible {
-  std::string_view field{};
-  Range limits{};
-};
-constexpr std::array<Plausible, 3> kPlausible{{{"gate_probability", zero_or(1e-15, 0.1)},
-                                               {"covariance_interval_s", zero_or(1e-4, 10.0)},
-                                               {"gnss_correlation_s", zero_or(0.1, 1e5)}}};
+constexpr std::array<Quantity, 3> kNumbers{{{"gate_probability", {}, zero_or(1e-15, 0.1)},
+                                            {"covariance_interval", kTimes, zero_or(1e-4, 10.0)},
+                                            {"gnss_correlation", kTimes, zero_or(0.1, 1e5)}}};
 
-/// What is told of a receiver, and not handed from scene to scene.
-constexpr std::array<std::string_view, 2> kOfTheScene{"gate_probability", "gnss_correlation_s"};
+/// What a filter is told of the sensors and the receiver of a scene: no other scene takes it over.
+constexpr std::array kOfTheScene{"imu", "lever_arm_b_m", "gate_probability", "gnss_correlation_s"};
 
 bool has_turn(EarthRotation rotation) {
   return rotation == EarthRotation::kOn || rotation == EarthRotation::kTurnAlone;
@@ -40,84 +36,36 @@ EarthRotation earth_rotation_of(bool turn, bool coriolis) {
   return coriolis ? EarthRotation::kCoriolisAlone : EarthRotation::kOff;
 }
 
-/// Hands each field that [filter] has, with its key, to io. The IMU and the lever arm are told
-/// elsewhere in a scene.
-template <class T, class Io>
-void for_key(const Field<T>& field, Io& io) {
-  using Value = std::remove_const_t<T>;
-  if constexpr (std::is_same_v<Value, BiasState>) {
-    io(std::string(field.name) + "_bias", field);
-  } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
-    io(field.name, field);
-  } else if constexpr (!std::is_same_v<Value, ImuErrorModel> &&
-                       !std::is_same_v<Value, Eigen::Vector3d>) {
-    for_each_key(field.value, io);
-  }
+void read_earth_rotation(TomlSection& section, EarthRotation& rotation) {
+  const auto both = section.boolean("earth_rotation");
+  const auto coriolis = section.boolean("coriolis");
+  rotation = earth_rotation_of(both.value_or(has_turn(rotation)),
+                               coriolis.value_or(both.value_or(has_coriolis(rotation))));
 }
 
-template <class T, class Io>
-void for_each_key(T& config, Io& io) {
-  config.visit(config, [&io](const auto&... fields) { (for_key(fields, io), ...); });
+std::string key_of(const FieldPath& path) {
+  return path.root() == "biases" ? std::string(path.name) + "_bias" : path.name;
 }
-
-class KeyReader {
- public:
-  explicit KeyReader(TomlSection& section) : section_(section) {}
-
-  void operator()(std::string_view, const Field<double>& field) {
-    std::string_view key = field.name;
-    const bool is_time = key.ends_with("_s");
-    if (is_time) key.remove_suffix(2);
-    const auto* const known = std::find_if(kPlausible.begin(), kPlausible.end(),
-                                           [&](const auto& p) { return p.field == field.name; });
-    const Range& limits = known != kPlausible.end() ? known->limits : field.range;
-    set(section_, {key, is_time ? kTimes : decltype(kTimes){}, limits}, field.value);
-  }
-  void operator()(std::string_view key, const Field<bool>& field) {
-    field.value = section_.boolean(key).value_or(field.value);
-  }
-  void operator()(std::string_view, const Field<EarthRotation>& field) {
-    const auto both = section_.boolean("earth_rotation");
-    const auto coriolis = section_.boolean("coriolis");
-    field.value = earth_rotation_of(both.value_or(has_turn(field.value)),
-                                    coriolis.value_or(both.value_or(has_coriolis(field.value))));
-  }
-  template <NamedEnum Enum>
-  void operator()(std::string_view key, const Field<Enum>& field) {
-    field.value = section_.choice<Enum>(key).value_or(field.value);
-  }
-
- private:
-  TomlSection& section_;
-};
-
-class KeyWriter {
- public:
-  explicit KeyWriter(std::string& text) : text_(text) {}
-
-  template <class T>
-  void operator()(std::string_view key, const Field<T>& field) {
-    if (std::find(kOfTheScene.begin(), kOfTheScene.end(), key) != kOfTheScene.end()) return;
-    text_ += fmt::format("{} = {}\n", key, field.value);
-  }
-  void operator()(std::string_view, const Field<const EarthRotation>& field) {
-    text_ += fmt::format("earth_rotation = {}\ncoriolis = {}\n", has_turn(field.value),
-                         has_coriolis(field.value));
-  }
-  template <NamedEnum Enum>
-  void operator()(std::string_view key, const Field<const Enum>& field) {
-    text_ += fmt::format("{} = \"{}\"\n", key, name(field.value));
-  }
-
- private:
-  std::string& text_;
-};
 
 }  // namespace
 
 void read_filter(TomlSection& section, Scene& scene) {
-  KeyReader reader(section);
-  for_each_key(scene.filter, reader);
+  walk_fields(scene.filter, [&section](const FieldPath& path, auto& value, const Range&) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if (path.root() == "imu") return;  // [filter.imu]
+    const std::string key = key_of(path);
+    if constexpr (std::is_same_v<Value, EarthRotation>) {
+      read_earth_rotation(section, value);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      value = section.boolean(key).value_or(value);
+    } else if constexpr (NamedEnum<Value>) {
+      value = section.choice<Value>(key).value_or(value);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      for (const Quantity& number : kNumbers) {
+        if (key.starts_with(number.name)) set(section, number, value);
+      }
+    }
+  });
   scene.imu_divider = static_cast<int>(
       section.integer("imu_divider", 1, kLargestDivider).value_or(scene.imu_divider));
 }
@@ -138,8 +86,18 @@ std::string filter_file(const Scene& scene, std::string_view comment) {
     comment.remove_prefix(end == comment.npos ? comment.size() : end + 1);
   }
   text += "[filter]\n";
-  KeyWriter writer(text);
-  for_each_key(scene.filter, writer);
+  walk_fields(scene.filter, [&text](const FieldPath& path, const auto& value, const Range&) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if (std::ranges::find(kOfTheScene, path.root()) != kOfTheScene.end()) return;
+    if constexpr (std::is_same_v<Value, EarthRotation>) {
+      text +=
+          fmt::format("earth_rotation = {}\ncoriolis = {}\n", has_turn(value), has_coriolis(value));
+    } else if constexpr (NamedEnum<Value>) {
+      text += fmt::format("{} = \"{}\"\n", key_of(path), name(value));
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      text += fmt::format("{} = {}\n", key_of(path), value);
+    }
+  });
   return text + fmt::format("imu_divider = {}\n", scene.imu_divider);
 }
 

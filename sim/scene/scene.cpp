@@ -31,8 +31,7 @@ void validate(const Scene& scene) {
   if (!scene.trajectory.motion) throw Error("scene: the trajectory has no motion");
   validate_fields("scene", scene);
   validate(scene.gnss.errors);
-  require("scene", {nullptr, "duration_s"}, {&scene.duration_s, 1},
-          positive_to(scene.trajectory.duration_s));
+  require("scene", "duration_s", scene.duration_s, positive_to(scene.trajectory.duration_s));
 }
 
 void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model) {

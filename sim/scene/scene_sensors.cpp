@@ -63,7 +63,7 @@ NamedImuModel read_class(TomlSection& section, const std::string& wanted) {
   }
   const auto imu = from_name<ImuClass>(wanted);
   if (!imu) {
-    std::vector<std::string_view> classes(kWords<ImuClass>.begin(), kWords<ImuClass>.end());
+    std::vector<std::string_view> classes(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
     classes.push_back(kMems);
     section.fail_unknown_word("class", wanted, classes);
   }

@@ -9,8 +9,8 @@ namespace leeway::sim {
 void validate(const GnssErrorModel& model) {
   validate_fields("GNSS simulator", model);
   const Eigen::Vector3d total_m = model.position_sigma_n_m + model.correlated_sigma_n_m;
-  require("GNSS simulator", {nullptr, "position_sigma_n_m + correlated_sigma_n_m"},
-          {total_m.data(), 3}, kPositive);
+  require("GNSS simulator", "position_sigma_n_m + correlated_sigma_n_m", total_m.minCoeff(),
+          kPositive);
 }
 
 GnssSimulator::GnssSimulator(const Trajectory& trajectory, const GnssErrorModel& model,
@@ -23,8 +23,7 @@ GnssSimulator::GnssSimulator(const Trajectory& trajectory, const GnssErrorModel&
 
 void GnssSimulator::advance_correlated_error(double t_s) {
   const double after_s = last_s_.value_or(kFinite.low);
-  require("GNSS simulator", {nullptr, "time of a fix after another"}, {&t_s, 1},
-          {.low = after_s, .above_low = true});
+  require("GNSS simulator", "time of a fix", t_s, {.low = after_s, .above_low = true});
   if (last_s_) {
     const GaussMarkovStep step =
         discretize({.sigma = 1.0, .tau_s = model_.correlation_time_s}, t_s - *last_s_);

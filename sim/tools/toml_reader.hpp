@@ -100,7 +100,7 @@ class TomlSection {
     const std::optional<std::string> given = text(key);
     if (!given) return {};
     const std::optional<Enum> value = from_name<Enum>(*given);
-    if (!value) fail_unknown_word(key, *given, kWords<Enum>);
+    if (!value) fail_unknown_word(key, *given, kNames<Enum>);
     return value;
   }
 

@@ -6,12 +6,12 @@
 #include <limits>
 #include <string>
 
-#include "leeway/earth/error.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/tools/random.hpp"
 #include "leeway/strapdown/strapdown.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -28,20 +28,12 @@ struct PaperCell {
 constexpr std::array<PaperCell, 5> kTable2{
     {{0.9, 980.0}, {3.1, 580.0}, {10.2, 325.0}, {87.3, 110.0}, {867.7, 35.0}}};
 
-void require(bool ok, const char* field, double value, const char* range) {
-  if (!ok) {
-    throw Error(std::string("drift: ") + field + " is " + std::to_string(value) + ", must be " +
-                range);
-  }
-}
-
 void validate(const DriftConfig& c) {
-  require(std::abs(c.latitude_deg) <= 90.0, "latitude_deg", c.latitude_deg, "within +-90");
-  require(c.imu_rate_hz >= 1.0 && c.imu_rate_hz <= 1000.0, "imu_rate_hz", c.imu_rate_hz,
-          "1 to 1000");
-  require(c.trials >= 2 && c.trials <= 1000000, "trials", c.trials, "2 to 1000000");
-  require(c.max_time_s > kTableTimeS && c.max_time_s <= 1e5, "max_time_s", c.max_time_s,
-          "above 100 and at most 100000");
+  require("drift", "latitude_deg", c.latitude_deg, between(-90.0, 90.0));
+  require("drift", "imu_rate_hz", c.imu_rate_hz, between(1.0, 1000.0));
+  require("drift", "trials", c.trials, between(2.0, 1e6));
+  require("drift", "max_time_s", c.max_time_s,
+          {.low = kTableTimeS, .high = 1e5, .above_low = true});
 }
 
 /// A vehicle at rest: the start and the true increment, the same at every step.

@@ -43,9 +43,7 @@ enum class BiasState {
   kNone,        ///< no bias: its state stays zero, and certain
 };
 constexpr auto names(BiasState) {
-  using enum BiasState;
-  return std::array{Named{kModelled, "modelled"}, Named{kRandomWalk, "random-walk"},
-                    Named{kConstant, "constant"}, Named{kNone, "none"}};
+  return std::array{"modelled", "random-walk", "constant", "none"};
 }
 
 struct BiasStates {

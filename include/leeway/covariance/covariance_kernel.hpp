@@ -20,10 +20,7 @@ enum class KernelForm {
   kSymmetric,  ///< blocks of Phi, symmetric P (default)
   kUd,         ///< P = U D U^T
 };
-constexpr auto names(KernelForm) {
-  using enum KernelForm;
-  return std::array{Named{kDense, "dense"}, Named{kSymmetric, "symmetric"}, Named{kUd, "ud"}};
-}
+constexpr auto names(KernelForm) { return std::array{"dense", "symmetric", "ud"}; }
 
 /// How the dense and the symmetric kernel take a measurement.
 enum class UpdateForm {
@@ -31,17 +28,11 @@ enum class UpdateForm {
   kJoseph,  ///< (I - K h) P (I - K h)^T + K K^T, row by row (default)
   kBatch,   ///< all rows at once, by the Cholesky factor of the innovation's covariance
 };
-constexpr auto names(UpdateForm) {
-  using enum UpdateForm;
-  return std::array{Named{kSimple, "simple"}, Named{kJoseph, "joseph"}, Named{kBatch, "batch"}};
-}
+constexpr auto names(UpdateForm) { return std::array{"simple", "joseph", "batch"}; }
 
 /// What a kernel computes in, for programs that choose: long double is for references.
 enum class Precision { kFloat, kDouble };
-constexpr auto names(Precision) {
-  using enum Precision;
-  return std::array{Named{kFloat, "float"}, Named{kDouble, "double"}};
-}
+constexpr auto names(Precision) { return std::array{"float", "double"}; }
 
 template <class Scalar>
 using CovarianceMatrix = Eigen::Matrix<Scalar, kErrorStates, kErrorStates>;

@@ -53,10 +53,7 @@ enum class GravityModel {
   kJ2,        ///< central term and J2; within 1.2e-4 m/s^2 (12 ug) from -10 km up
   kNormal,    ///< the exact normal field; within 1.5e-14 m/s^2, rounding included, from -10 km up
 };
-constexpr auto names(GravityModel) {
-  using enum GravityModel;
-  return std::array{Named{kConstant, "constant"}, Named{kJ2, "j2"}, Named{kNormal, "normal"}};
-}
+constexpr auto names(GravityModel) { return std::array{"constant", "j2", "normal"}; }
 
 /// Gravity in ECEF, m/s^2, at r_e (m). @pre 6.3e6 < |r_e|.
 /// Source: Heiskanen and Moritz, Physical Geodesy, (2-92) for the zonal coefficients; the normal

@@ -32,11 +32,7 @@ enum class GnssLogFormat {
   /// positive definite matrix only its diagonal is used.
   kRtklib,
 };
-constexpr auto names(GnssLogFormat) {
-  using enum GnssLogFormat;
-  return std::array{Named{kCsv, "CSV"}, Named{kKfGins, "KF-GINS text"},
-                    Named{kRtklib, "RTKLIB .pos"}};
-}
+constexpr auto names(GnssLogFormat) { return std::array{"CSV", "KF-GINS text", "RTKLIB .pos"}; }
 
 struct GnssLogOptions {
   double position_sigma_scale{1.0};  ///< multiplies the log's standard deviations

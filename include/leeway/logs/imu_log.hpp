@@ -22,9 +22,7 @@ enum class ImuLogFormat {
   kKfGins,         ///< no header, blanks between: seconds of week, dtheta xyz (rad), dv xyz (m/s)
 };
 constexpr auto names(ImuLogFormat) {
-  using enum ImuLogFormat;
-  return std::array{Named{kCsvRates, "CSV, rates"}, Named{kCsvIncrements, "CSV, increments"},
-                    Named{kKfGins, "KF-GINS text"}};
+  return std::array{"CSV, rates", "CSV, increments", "KF-GINS text"};
 }
 
 struct ImuLogOptions {

@@ -24,15 +24,9 @@ enum class LineDamage {
   kTooLong,  ///< LineReader::kMaxLineBytes
 };
 constexpr auto names(LineDamage) {
-  using enum LineDamage;
-  return std::array{Named{kNotANumber, "not a number"},
-                    Named{kMissingField, "missing field"},
-                    Named{kNotFinite, "not finite"},
-                    Named{kTimeGoesBack, "time goes back"},
-                    Named{kDuplicateTime, "time repeated"},
-                    Named{kTimeJumpsAhead, "time jumps ahead of the lines after it"},
-                    Named{kOutOfRange, "out of range"},
-                    Named{kTooLong, "line too long"}};
+  return std::array{"not a number",   "missing field", "not finite",
+                    "time goes back", "time repeated", "time jumps ahead of the lines after it",
+                    "out of range",   "line too long"};
 }
 inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 

@@ -14,10 +14,7 @@ enum class HorizontalMetric {
   kR95,   ///< the radius that 95 % of the errors stay within; 1.73 DRMS when N and E are alike
   kAxis,  ///< 1 sigma of the worse of north and east
 };
-constexpr auto names(HorizontalMetric) {
-  using enum HorizontalMetric;
-  return std::array{Named{kDrms, "drms"}, Named{kR95, "r95"}, Named{kAxis, "axis"}};
-}
+constexpr auto names(HorizontalMetric) { return std::array{"drms", "r95", "axis"}; }
 
 /// North-east covariance (m^2) of the position error at r_e_m.
 /// @param P_rr_e_m2  covariance of dr_e in ECEF axes

@@ -38,9 +38,6 @@ struct Health {
 };
 
 constexpr auto names(Health::State) {
-  using enum Health::State;
-  return std::array{Named{kAligning, "aligning"}, Named{kHeadingOpen, "heading_open"},
-                    Named{kAligned, "aligned"},   Named{kCoasting, "coasting"},
-                    Named{kGating, "gating"},     Named{kInconsistent, "inconsistent"}};
+  return std::array{"aligning", "heading_open", "aligned", "coasting", "gating", "inconsistent"};
 }
 }  // namespace leeway

@@ -21,11 +21,8 @@ enum class Restore : std::uint8_t {
   kDamaged,             ///< the checksum does not fit
 };
 constexpr auto names(Restore) {
-  using enum Restore;
-  return std::array{
-      Named{kRestored, "restored"},          Named{kNotASnapshot, "not a snapshot"},
-      Named{kOtherVersion, "other version"}, Named{kOtherConfiguration, "other configuration"},
-      Named{kWrongSize, "wrong size"},       Named{kDamaged, "damaged"}};
+  return std::array{"restored",   "not a snapshot", "other version", "other configuration",
+                    "wrong size", "damaged"};
 }
 
 }  // namespace leeway

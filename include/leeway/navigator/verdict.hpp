@@ -29,22 +29,9 @@ enum class Verdict : std::uint8_t {
   kOverflow,     ///< more measurements wait than there is room for
 };
 constexpr auto names(Verdict) {
-  using enum Verdict;
-  return std::array{Named{kAccepted, "accepted"},
-                    Named{kAligning, "aligning"},
-                    Named{kFused, "fused"},
-                    Named{kGated, "gated"},
-                    Named{kReset, "reset"},
-                    Named{kGap, "gap"},
-                    Named{kLate, "late"},
-                    Named{kDuplicate, "duplicate"},
-                    Named{kOutOfOrder, "out_of_order"},
-                    Named{kFuture, "future"},
-                    Named{kClockJump, "clock_jump"},
-                    Named{kUnused, "unused"},
-                    Named{kNotFinite, "not_finite"},
-                    Named{kImplausible, "implausible"},
-                    Named{kOverflow, "overflow"}};
+  return std::array{"accepted",   "aligning", "fused",      "gated",        "reset",
+                    "gap",        "late",     "duplicate",  "out_of_order", "future",
+                    "clock_jump", "unused",   "not_finite", "implausible",  "overflow"};
 }
 
 inline constexpr std::size_t kVerdicts = kAll<Verdict>.size();

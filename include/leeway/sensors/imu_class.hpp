@@ -9,18 +9,12 @@ namespace leeway {
 
 enum class ImuClass { kMarine, kAviation, kIntermediate, kTactical, kAutomotive };
 constexpr auto names(ImuClass) {
-  using enum ImuClass;
-  return std::array{Named{kMarine, "marine"}, Named{kAviation, "aviation"},
-                    Named{kIntermediate, "intermediate"}, Named{kTactical, "tactical"},
-                    Named{kAutomotive, "automotive"}};
+  return std::array{"marine", "aviation", "intermediate", "tactical", "automotive"};
 }
 
 /// Where in a Table 1 range: its low end, geometric mean, or high end.
 enum class RangeEnd { kLow, kMid, kHigh };
-constexpr auto names(RangeEnd) {
-  using enum RangeEnd;
-  return std::array{Named{kLow, "low"}, Named{kMid, "mid"}, Named{kHigh, "high"}};
-}
+constexpr auto names(RangeEnd) { return std::array{"low", "mid", "high"}; }
 
 /// Biases are random constants with the Table 1 drift as their 1-sigma; no scale errors. A bound
 /// given as "< x" is read as the range x/4 to x, one given as "> x" as x alone.

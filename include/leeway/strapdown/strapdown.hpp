@@ -29,23 +29,18 @@ enum class Scheme {
   kSculling,     ///< one sample + sculling and position curvature alone
 };
 constexpr auto names(Scheme) {
-  using enum Scheme;
-  return std::array{Named{kExplicitEuler, "explicit-euler"},
-                    Named{kSemiImplicitEuler, "semi-implicit-euler"},
-                    Named{kTrapezoid, "trapezoid"},
-                    Named{kOneSample, "one-sample"},
-                    Named{kTwoSample, "two-sample"},
-                    Named{kRungeKutta4, "runge-kutta-4", "rk4"},
-                    Named{kConing, "coning"},
-                    Named{kSculling, "sculling"}};
+  return std::array{"explicit-euler", "semi-implicit-euler", "trapezoid", "one-sample",
+                    "two-sample",     "runge-kutta-4",       "coning",    "sculling"};
+}
+/// What `leeway fuse --scheme` called kRungeKutta4 once.
+constexpr std::optional<Scheme> alias(Scheme, std::string_view word) {
+  return word == "rk4" ? std::optional(Scheme::kRungeKutta4) : std::nullopt;
 }
 
 /// Whether the Earth turns: rotation of the frame, which the attitude sees, and Coriolis.
 enum class EarthRotation { kOff, kOn, kTurnAlone, kCoriolisAlone };
 constexpr auto names(EarthRotation) {
-  using enum EarthRotation;
-  return std::array{Named{kOff, "still"}, Named{kOn, "turning"}, Named{kTurnAlone, "turn-alone"},
-                    Named{kCoriolisAlone, "coriolis-alone"}};
+  return std::array{"still", "turning", "turn-alone", "coriolis-alone"};
 }
 
 /// The recent past that a scheme looks back on. It survives a correction of the state, and is

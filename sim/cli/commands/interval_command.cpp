@@ -32,7 +32,7 @@ struct IntervalOptions {
 std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
   if (!choice.imus.empty()) return scenes_of(choice);
   SceneChoice classes = choice;
-  classes.imus.assign(kWords<ImuClass>.begin(), kWords<ImuClass>.end());
+  classes.imus.assign(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
   std::vector<sim::Scene> scenes = scenes_of(classes);
   SceneChoice as_written = choice;
   as_written.bias.reset();

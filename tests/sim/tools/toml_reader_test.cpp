@@ -13,9 +13,7 @@ using test::contains;
 using test::near;
 
 enum class Kind { kCar, kTrain };
-constexpr auto names(Kind) {
-  return std::array{Named{Kind::kCar, "car"}, Named{Kind::kTrain, "train"}};
-}
+constexpr auto names(Kind) { return std::array{"car", "train"}; }
 
 constexpr Quantity kDuration{"duration", {&units::kS, &units::kMin}, between(1.0, 1e5)};
 constexpr Quantity kSigma{"sigma", {&units::kMg, &units::kUg}, zero_or(1e-6, 10.0)};

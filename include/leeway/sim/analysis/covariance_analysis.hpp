@@ -36,22 +36,21 @@ enum class ErrorSource {
   kGnssVelocity,      ///< white
 };
 constexpr auto names(ErrorSource) {
-  using enum ErrorSource;
-  return std::array{Named{kInitial, "initial"},
-                    Named{kAccelerometerBias, "accelerometer_bias"},
-                    Named{kAccelerometerDrift, "accelerometer_drift"},
-                    Named{kAccelerometerNoise, "accelerometer_noise"},
-                    Named{kAccelerometerScale, "accelerometer_scale"},
-                    Named{kAccelerometerMisalignment, "accelerometer_misalignment"},
-                    Named{kGyroBias, "gyro_bias"},
-                    Named{kGyroDrift, "gyro_drift"},
-                    Named{kGyroNoise, "gyro_noise"},
-                    Named{kGyroScale, "gyro_scale"},
-                    Named{kGyroMisalignment, "gyro_misalignment"},
-                    Named{kGyroGSensitivity, "gyro_g_sensitivity"},
-                    Named{kGnssPosition, "gnss_position"},
-                    Named{kGnssCorrelated, "gnss_correlated"},
-                    Named{kGnssVelocity, "gnss_velocity"}};
+  return std::array{"initial",
+                    "accelerometer_bias",
+                    "accelerometer_drift",
+                    "accelerometer_noise",
+                    "accelerometer_scale",
+                    "accelerometer_misalignment",
+                    "gyro_bias",
+                    "gyro_drift",
+                    "gyro_noise",
+                    "gyro_scale",
+                    "gyro_misalignment",
+                    "gyro_g_sensitivity",
+                    "gnss_position",
+                    "gnss_correlated",
+                    "gnss_velocity"};
 }
 
 /// What one source contributes.

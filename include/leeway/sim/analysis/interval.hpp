@@ -43,10 +43,7 @@ struct Interval {
   double step_effect{};
 };
 
-constexpr auto names(Interval::Outcome) {
-  using enum Interval::Outcome;
-  return std::array{Named{kSolved, "solved"}, Named{kNever, "never"}, Named{kAlways, "always"}};
-}
+constexpr auto names(Interval::Outcome) { return std::array{"solved", "never", "always"}; }
 /// Solves for each limit by bracketing and secants in log(error) over log(interval), on the
 /// truth-model covariance analysis; the scene's own gnss.interval_s is not used.
 /// @param progress  called with the fraction done

@@ -14,11 +14,7 @@
 namespace leeway::sim {
 
 enum class AtlasVerdict { kSurvives, kDegrades, kFails };
-constexpr auto names(AtlasVerdict) {
-  using enum AtlasVerdict;
-  return std::array{Named{kSurvives, "survives"}, Named{kDegrades, "degrades"},
-                    Named{kFails, "fails"}};
-}
+constexpr auto names(AtlasVerdict) { return std::array{"survives", "degrades", "fails"}; }
 
 /// What a variant is of: the columns of the matrix of all scenes.
 enum class AtlasGroup {
@@ -33,12 +29,8 @@ enum class AtlasGroup {
   kNotOffered,  ///< a method that the library does not have: what the scene shows failing
 };
 constexpr auto names(AtlasGroup) {
-  using enum AtlasGroup;
-  return std::array{Named{kNavigator, "Navigator"},          Named{kEkf, "Ekf"},
-                    Named{kDoubleKernel, "kernels, double"}, Named{kFloatKernel, "kernels, float"},
-                    Named{kInvariant, "invariant EKF"},      Named{kReset, "reset"},
-                    Named{kStrapdown, "strapdown"},          Named{kInput, "input"},
-                    Named{kNotOffered, "not offered"}};
+  return std::array{"Navigator", "Ekf",       "kernels, double", "kernels, float", "invariant EKF",
+                    "reset",     "strapdown", "input",           "not offered"};
 }
 
 /// One variant under one condition of a scene.

@@ -47,10 +47,8 @@ enum class Consistency {
   kNotFinite,    ///< a trial that ended in numbers that are none, or with P not positive
 };
 constexpr auto names(Consistency) {
-  using enum Consistency;
-  return std::array{Named{kNoClaim, "no claim"},      Named{kConsistent, "consistent"},
-                    Named{kOptimistic, "optimistic"}, Named{kPessimistic, "pessimistic"},
-                    Named{kDiverged, "diverged"},     Named{kNotFinite, "not finite"}};
+  return std::array{"no claim",    "consistent", "optimistic",
+                    "pessimistic", "diverged",   "not finite"};
 }
 
 Consistency consistency_of(const Accuracy& accuracy);

@@ -17,10 +17,7 @@ enum class Estimator {
   kInvariantEkf,  ///< InvariantEkf: the same on the error of SE_2(3)
   kReset,         ///< ResetFilter: the seed's separate scheme
 };
-constexpr auto names(Estimator) {
-  using enum Estimator;
-  return std::array{Named{kEkf, "ekf"}, Named{kInvariantEkf, "invariant"}, Named{kReset, "reset"}};
-}
+constexpr auto names(Estimator) { return std::array{"ekf", "invariant", "reset"}; }
 
 struct Variant {
   Estimator estimator{Estimator::kEkf};

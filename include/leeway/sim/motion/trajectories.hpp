@@ -11,11 +11,7 @@ namespace leeway::sim {
 /// The motions that a study can ask for. The first five have no end of their own.
 enum class TrajectoryKind { kStatic, kStraight, kCircle, kSquareLoop, kCar, kWaypoints, kRecorded };
 constexpr auto names(TrajectoryKind) {
-  using enum TrajectoryKind;
-  return std::array{Named{kStatic, "static"},    Named{kStraight, "straight"},
-                    Named{kCircle, "circle"},    Named{kSquareLoop, "square-loop"},
-                    Named{kCar, "car"},          Named{kWaypoints, "waypoints"},
-                    Named{kRecorded, "recorded"}};
+  return std::array{"static", "straight", "circle", "square-loop", "car", "waypoints", "recorded"};
 }
 
 inline constexpr Geodetic kDefaultOrigin{45.0 * kRadPerDeg, 37.6 * kRadPerDeg, 100.0};

@@ -41,29 +41,17 @@ enum class ModelTerm {
   kGSensitivity,       ///< of the gyros, likewise
 };
 constexpr auto names(ModelTerm) {
-  using enum ModelTerm;
-  return std::array{Named{kEarthTurn, "earth_rotation"},
-                    Named{kCoriolis, "coriolis"},
-                    Named{kNormalGravity, "gravity_beyond_j2"},
-                    Named{kJ2, "gravity_beyond_constant"},
-                    Named{kGravityGradient, "gravity_gradient"},
-                    Named{kConing, "coning"},
-                    Named{kSculling, "sculling"},
-                    Named{kSecondOrder, "integration_order"},
-                    Named{kFullRate, "imu_rate_half"},
-                    Named{kFifthRate, "imu_rate_fifth"},
-                    Named{kEachCovariance, "covariance_0_1_s"},
-                    Named{kTenthCovariance, "covariance_1_s"},
-                    Named{kDoublePrecision, "double_precision"},
-                    Named{kAccelerometerBias, "accelerometer_bias"},
-                    Named{kGyroBias, "gyro_bias"},
-                    Named{kBiasDecay, "bias_decay"},
-                    Named{kBiasDrive, "bias_drive"},
-                    Named{kLeverArm, "lever_arm"},
-                    Named{kLatency, "latency"},
-                    Named{kScaleFactors, "scale_factors"},
-                    Named{kMisalignments, "misalignments"},
-                    Named{kGSensitivity, "g_sensitivity"}};
+  return std::array{"earth_rotation",    "coriolis",
+                    "gravity_beyond_j2", "gravity_beyond_constant",
+                    "gravity_gradient",  "coning",
+                    "sculling",          "integration_order",
+                    "imu_rate_half",     "imu_rate_fifth",
+                    "covariance_0_1_s",  "covariance_1_s",
+                    "double_precision",  "accelerometer_bias",
+                    "gyro_bias",         "bias_decay",
+                    "bias_drive",        "lever_arm",
+                    "latency",           "scale_factors",
+                    "misalignments",     "g_sensitivity"};
 }
 
 /// What the filter does without the term.

@@ -11,10 +11,7 @@ enum class BiasModel {
   kConstant,     ///< stays what it was at turn-on
   kGaussMarkov,  ///< wanders, with the same sigma at every moment
 };
-constexpr auto names(BiasModel) {
-  using enum BiasModel;
-  return std::array{Named{kConstant, "constant"}, Named{kGaussMarkov, "gauss_markov"}};
-}
+constexpr auto names(BiasModel) { return std::array{"constant", "gauss_markov"}; }
 
 inline constexpr double kBiasTauS = 3600.0;  ///< of the wandering, where nothing else is said
 

@@ -14,10 +14,7 @@
 namespace leeway::sim {
 
 enum class Triad { kAccelerometer, kGyro };
-constexpr auto names(Triad) {
-  using enum Triad;
-  return std::array{Named{kAccelerometer, "accelerometer"}, Named{kGyro, "gyro"}};
-}
+constexpr auto names(Triad) { return std::array{"accelerometer", "gyro"}; }
 
 /// The numbers of an error model that a datasheet can fill.
 enum class ModelField {
@@ -30,14 +27,8 @@ enum class ModelField {
   kGSensitivitySigma  ///< of the gyro only
 };
 constexpr auto names(ModelField) {
-  using enum ModelField;
-  return std::array{Named{kBiasSigma, "bias_sigma"},
-                    Named{kInRunSigma, "in_run_sigma"},
-                    Named{kInRunTau, "in_run_tau"},
-                    Named{kNoise, "noise"},
-                    Named{kScaleSigma, "scale_sigma"},
-                    Named{kMisalignmentSigma, "misalignment_sigma"},
-                    Named{kGSensitivitySigma, "g_sensitivity_sigma"}};
+  return std::array{"bias_sigma",  "in_run_sigma",       "in_run_tau",         "noise",
+                    "scale_sigma", "misalignment_sigma", "g_sensitivity_sigma"};
 }
 
 /// What a printed number is, which decides how it becomes the field (see sigma_of).
@@ -47,11 +38,7 @@ enum class Meaning {
   kAllanMinimum,  ///< in-run bias (in)stability: the lowest point of the Allan deviation
   kAssumed        ///< printed nowhere: stands in so that the model is not too good
 };
-constexpr auto names(Meaning) {
-  using enum Meaning;
-  return std::array{Named{kSigma, ""}, Named{kMaximum, "maximum"},
-                    Named{kAllanMinimum, "Allan minimum"}, Named{kAssumed, "assumed"}};
-}
+constexpr auto names(Meaning) { return std::array{"", "maximum", "Allan minimum", "assumed"}; }
 
 /// One printed number and the field it fills.
 struct DatasheetValue {
@@ -74,9 +61,7 @@ inline constexpr double kAllanPeak = 0.6173642831444414;
 
 enum class Grade { kConsumer, kIndustrial, kTactical, kNavigation };
 constexpr auto names(Grade) {
-  using enum Grade;
-  return std::array{Named{kConsumer, "consumer"}, Named{kIndustrial, "industrial"},
-                    Named{kTactical, "tactical"}, Named{kNavigation, "navigation"}};
+  return std::array{"consumer", "industrial", "tactical", "navigation"};
 }
 
 struct ImuPart {

@@ -29,11 +29,7 @@ enum class DriftReading {
   /// Per-axis random-constant biases of both sensors and their noise, 3-D RMS over the trials.
   kComplete,
 };
-constexpr auto names(DriftReading) {
-  using enum DriftReading;
-  return std::array{Named{kPaper, "paper"}, Named{kPaperAssumptions, "paper_assumptions"},
-                    Named{kComplete, "complete"}};
-}
+constexpr auto names(DriftReading) { return std::array{"paper", "paper_assumptions", "complete"}; }
 
 /// A cell pair of the table. Percentiles are those of single trials; for the other readings they
 /// equal the error. NaN where the reading gives none.
