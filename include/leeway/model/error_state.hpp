@@ -1,5 +1,5 @@
 /// @file
-/// The 15 error states: order, sign and units. Every F, H, report column and test uses this file.
+/// The 15 error states: order, sign and units. Every F, H, output column and test uses this file.
 ///
 ///   psi_e  attitude, rad, ECEF axes      C_eb(true) = exp([psi_e x]) C_eb(estimate)
 ///   dv_e   velocity, m/s, ECEF axes      x = truth - estimate, here and below
@@ -30,20 +30,20 @@ struct ImuBias {
   Eigen::Vector3d b_g_radps{Eigen::Vector3d::Zero()};
 };
 
-/// What the filter estimates: the navigation state and the sensor biases.
+/// The estimate of a filter: the navigation state and the sensor biases.
 struct Estimate {
   NavState nav{};
   ImuBias bias{};
 };
 
-/// Moves the estimate by x, so that difference(inject(e, x), e) = x.
+/// Correction of the estimate by x, so that difference(corrected, original) = x.
 void inject(Estimate& estimate, const ErrorVector& x);
 
-/// x = truth - estimate in the sense above; |psi_e| <= pi.
+/// The error x = truth - estimate, as defined above; |psi_e| <= pi.
 ErrorVector difference(const Estimate& truth, const Estimate& estimate);
 
-/// How the error changes when x_hat has been injected: d difference(truth, injected) / d x at
-/// x = x_hat, differing from the identity in the attitude block alone, which is returned.
+/// The attitude block of the reset Jacobian d difference(truth, corrected) / d x at x = x_hat,
+/// where x_hat has been injected. All other blocks are those of the identity.
 Eigen::Matrix3d reset_jacobian(const ErrorVector& x_hat);
 
 }  // namespace leeway

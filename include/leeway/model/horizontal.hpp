@@ -1,5 +1,5 @@
 /// @file
-/// One number for the size of a horizontal position error: what a budget is stated in.
+/// One number for the size of a horizontal position error: what a limit is stated in.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +9,7 @@
 
 namespace leeway {
 
+/// Measures of a horizontal position error.
 enum class HorizontalMetric {
   kDrms,  ///< sqrt(P_NN + P_EE): the root mean squared radial error
   kR95,   ///< the radius that 95 % of the errors stay within; 1.73 DRMS when N and E are alike
@@ -25,8 +26,8 @@ Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
 /// @pre P is positive semidefinite.
 double horizontal_error_m(HorizontalMetric metric, const Eigen::Matrix2d& P_ne_m2);
 
-/// The radius that a zero-mean Gaussian error stays within with the given probability, in m;
-/// relative error below 1e-9. No heap. @pre P is positive semidefinite, 0 < probability < 1.
+/// The radius within which a zero-mean Gaussian error stays with the given probability, in m.
+/// Relative error below 1e-9. No heap. @pre P is positive semidefinite, 0 < probability < 1.
 /// Source: the density in elliptic polar coordinates, integrated over the radius in closed form.
 double horizontal_radius_m(const Eigen::Matrix2d& P_ne_m2, double probability);
 

@@ -1,5 +1,5 @@
 /// @file
-/// A linearized measurement of whatever kind, as the filter fuses it.
+/// A linearized measurement of any kind, as the filter fuses it.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,11 +9,12 @@
 
 namespace leeway {
 
-/// Rows and columns: the components of a measurement, at most 6. Fixed storage.
+/// A matrix over the components of a measurement, at most 6 x 6, in fixed storage.
 using MeasurementMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
-/// z = H x + H_vehicle y + noise of covariance R, one row per component, at most 6; x is the error
-/// state, y the error of the vehicle's parameters. Fixed storage.
+/// A measurement innovation = H x + H_vehicle y + noise of covariance R, with one row per
+/// component, at most 6, in fixed storage. x is the error state, y the error of the vehicle's
+/// parameters.
 struct Measurement {
   explicit Measurement(int rows)
       : innovation(rows), H(rows, kErrorStates), H_vehicle(rows, kVehicleStates), R(rows, rows) {

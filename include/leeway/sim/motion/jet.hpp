@@ -1,13 +1,14 @@
 /// @file
-/// A value with its first and second time derivative, so that a motion is written once, as a closed
-/// form, and its velocity and acceleration are exact to rounding.
+/// Values with their first and second time derivatives. A motion is written once, as a closed form;
+/// its velocity and acceleration are then exact to rounding.
 #pragma once
 
 #include <cmath>
 
 namespace leeway::sim {
 
-/// A function of time, expanded at one time to second order. Constants convert implicitly.
+/// A function of time at one moment: its value and its first two derivatives, per second. Constants
+/// convert implicitly.
 struct Jet {
   constexpr Jet(double constant = 0.0) : value(constant) {}
   constexpr Jet(double v, double d1, double d2) : value(v), first(d1), second(d2) {}
@@ -17,7 +18,7 @@ struct Jet {
   double second{};
 };
 
-/// The time itself.
+/// The time t itself as a function of time: derivatives 1 and 0.
 constexpr Jet time_jet(double t_s) { return {t_s, 1.0, 0.0}; }
 
 constexpr Jet operator-(const Jet& a) { return {-a.value, -a.first, -a.second}; }
@@ -61,7 +62,8 @@ inline Jet sqrt(const Jet& a) {
   return {root, d1, (0.5 * a.second - d1 * d1) / root};
 }
 
-/// Derivatives are zero for two constants, the origin included. @pre otherwise not both zero.
+/// The angle of the point (x, y), in rad; at the origin its derivatives are zero.
+/// @pre x and y are not both zero, unless both are constants.
 inline Jet atan2(const Jet& y, const Jet& x) {
   const double angle = std::atan2(y.value, x.value);
   const double norm_sq = x.value * x.value + y.value * y.value;

@@ -1,5 +1,5 @@
 /// @file
-/// A motion that was recorded: a smooth curve through a truth or reference log.
+/// A recorded motion: a smooth curve through a truth or reference log.
 #pragma once
 
 #include <filesystem>
@@ -8,26 +8,29 @@
 
 namespace leeway::sim {
 
+/// Parameters of the curve through a log.
 struct RecordedParameters {
   std::filesystem::path file{};  ///< layout of TruthLogReader, plain or gzip
-  /// Bandwidth: motion up to 0.25 / smoothing_s Hz is kept, that above 1 / smoothing_s, noise
-  /// included, is not. 0.01 to 100.
+  /// Bandwidth, 0.01 to 100: motion up to 0.25 / smoothing_s Hz is kept. Motion and noise above
+  /// 1 / smoothing_s Hz are removed.
   double smoothing_s{1.0};
-  double max_gap_s{3.0};  ///< longest hole that is bridged, by the smoothest curve
-  double min_speed_mps{
-      1.0};  ///< where a log has no attitude: from here on the course is the heading
+  double max_gap_s{3.0};  ///< longest hole in the log that the smoothest curve may fill
+  /// Least speed at which the course is the heading, in a log without attitude.
+  double min_speed_mps{1.0};
 };
 
-/// Position and attitude by a spline of degree five with knots every smoothing_s, fitted by least
-/// squares; velocity, specific force and angular rate are its derivatives, so those that the log
-/// may hold are not used. A log without attitude gives a body that points along its velocity, level
-/// across; below min_speed_mps its heading and pitch go evenly from where it was last fast enough
-/// to where it is next. The time starts with the first row. breaks_s are the knots, where a fifth
-/// derivative jumps; angles are whole jets.
-/// @throws Error naming the file, and the line where it can, when the log cannot be read or has a
-/// damaged line, a hole longer than max_gap_s, less than 10 rows or 2 smoothing_s, more than 5e6
-/// rows or 1e6 s, rows with and without attitude, a pitch beyond 80 deg, or goes further than
-/// 7000 km from its start.
+/// Position and attitude as a spline of degree five with knots every smoothing_s, fitted by least
+/// squares. Velocity, specific force and angular rate are its derivatives; those of the log are not
+/// used. Time 0 is the first row. breaks_s are the knots, where the fifth derivative jumps. Angles
+/// have both derivatives.
+///
+/// A log without attitude gives a body that points along its velocity, level across. While the body
+/// is slower than min_speed_mps, heading and pitch change evenly from their last values to the
+/// next.
+/// @throws Error naming the file, and the line if known. The log must be readable, without damaged
+/// lines and without holes longer than max_gap_s. It must have at least 10 rows and 2 smoothing_s,
+/// at most 5e6 rows and 1e6 s, and attitude in all rows or in none. Its pitch must stay within
+/// 80 deg, its position within 7000 km of the start.
 Trajectory recorded_trajectory(const RecordedParameters& parameters);
 
 }  // namespace leeway::sim

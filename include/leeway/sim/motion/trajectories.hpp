@@ -1,5 +1,7 @@
 /// @file
-/// Ready trajectories: the motions of the studies, and two of the reference vectors.
+/// Predefined trajectories: the motions of the studies, and two of the reference vectors. Every
+/// factory throws Error, naming the field and its range, unless the duration is > 0 and each
+/// parameter is finite and in the range given at it.
 #pragma once
 
 #include "leeway/earth/names.hpp"
@@ -16,7 +18,7 @@ constexpr auto names(TrajectoryKind) {
 
 inline constexpr Geodetic kDefaultOrigin{45.0 * kRadPerDeg, 37.6 * kRadPerDeg, 100.0};
 
-/// At rest on the turning Earth.
+/// Parameters of a body at rest on the rotating Earth.
 struct StaticParameters {
   Geodetic origin{kDefaultOrigin};
   EulerAngles attitude{};
@@ -24,7 +26,7 @@ struct StaticParameters {
 };
 Trajectory static_trajectory(const StaticParameters& parameters = {});
 
-/// A straight line at constant velocity, the body along it.
+/// Parameters of a straight line at constant velocity, with the body along it.
 struct StraightParameters {
   Geodetic origin{kDefaultOrigin};
   double ground_speed_mps{20.0};  ///< >= 0
@@ -34,7 +36,7 @@ struct StraightParameters {
 };
 Trajectory straight(const StraightParameters& parameters = {});
 
-/// A level right-hand circle through the origin, starting north.
+/// Parameters of a level right-hand circle through the origin, starting north.
 struct CircleParameters {
   Geodetic origin{kDefaultOrigin};
   double radius_m{100.0};  ///< > 0
@@ -43,9 +45,9 @@ struct CircleParameters {
 };
 Trajectory circle(const CircleParameters& parameters = {});
 
-/// A level square with rounded corners, from the origin north, right turns, at constant speed. Yaw
-/// rate and lateral acceleration jump where straights and turns meet. Four sides close exactly, so
-/// the position has no error that grows with time.
+/// Parameters of a level square with rounded corners at constant speed, starting north, with right
+/// turns. Yaw rate and lateral acceleration jump where straights and turns meet. Four sides close
+/// exactly, so the position has no error that grows with time.
 struct SquareLoopParameters {
   Geodetic origin{kDefaultOrigin};
   double speed_mps{20.0};   ///< >= 0
@@ -55,11 +57,11 @@ struct SquareLoopParameters {
 };
 Trajectory square_loop(const SquareLoopParameters& parameters = {});
 
-/// A car on a hilly road in the shape of an eight, 2.4 km a lap, with stops of 10 to 20 s; at rest
-/// first, so that a filter can level. Speed up to 25 m/s and slow in the bends, acceleration below
-/// 2.5 m/s^2 along and 3.5 across, slopes up to 6 %, camber and bumps of the road in roll and
-/// pitch. The body follows the road. The angular acceleration jumps where speeding up starts and
-/// ends.
+/// Parameters of a car on a hilly road in the shape of an eight, 2.4 km a lap, with stops of 10 to
+/// 20 s. It is at rest first, so that a filter can level. Its speed is up to 25 m/s, lower in the
+/// bends; its acceleration is below 2.5 m/s^2 along and 3.5 m/s^2 across. Slopes are up to 6 %.
+/// The body follows the road, whose camber and bumps appear in roll and pitch. The angular
+/// acceleration jumps where the car begins or ends to change its speed.
 struct CarDriveParameters {
   Geodetic origin{56.0 * kRadPerDeg, 92.8 * kRadPerDeg, 150.0};
   double initial_rest_s{30.0};  ///< >= 0
@@ -73,8 +75,5 @@ Trajectory circle20();
 /// The reference vector manoeuvre_car: a level eight at 14 to 30 m/s with 1 to 2 Hz body motion,
 /// for 100 s.
 Trajectory manoeuvre_car();
-
-// Every factory throws Error, with the field and its range, unless the duration is > 0 and each
-// parameter finite and in the range given at it.
 
 }  // namespace leeway::sim

@@ -1,6 +1,6 @@
 /// @file
-/// Truth as functions of time. Whatever a sensor or a report needs of the truth is derived from one
-/// closed-form motion, so all of it agrees to rounding.
+/// Truth as functions of time. Every true quantity is derived from one closed-form motion, so all
+/// of them agree to rounding.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,10 +15,10 @@
 
 namespace leeway::sim {
 
-/// The plane that touches the ellipsoid's parallel surface at the origin; axes l: north, east, down
-/// at the origin. It does not follow the Earth's curvature: 1 km away it is 0.08 m higher and its
-/// down is 1.6e-4 rad off the local one. A motion that does follow it is given in the same axes, as
-/// coordinates (waypoints.hpp).
+/// The tangent plane at an origin, with the axes l: north, east, down at the origin. It does not
+/// follow the Earth's curvature: 1 km away it is 0.08 m higher and its down is 1.6e-4 rad off the
+/// local one. A motion that does follow the curvature uses the same axes as mere coordinates
+/// (waypoints.hpp).
 struct TangentPlane {
   TangentPlane() : TangentPlane(Geodetic{}) {}
   explicit TangentPlane(const Geodetic& at)
@@ -40,13 +40,14 @@ struct LocalMotion {
   Jet yaw_rad{};
 };
 
+/// A motion of the IMU over a finite time.
 struct Trajectory {
   std::string name{};
   TangentPlane plane{};
-  double duration_s{};                              ///< truth is defined on 0 to duration_s
+  double duration_s{};                              ///< the truth is defined on 0 to duration_s
   std::function<LocalMotion(double t_s)> motion{};  ///< pure: safe to share between threads
-  std::vector<double> breaks_s{};                   ///< ascending; times where a derivative jumps
-  std::optional<double> period_s{};  ///< the motion repeats after this; a study may use that
+  std::vector<double> breaks_s{};                   ///< times where a derivative jumps, ascending
+  std::optional<double> period_s{};  ///< time after which the motion repeats; studies may use it
 };
 
 /// The truth at one time. Satisfies exactly
@@ -58,8 +59,9 @@ struct TruthPoint {
   Eigen::Vector3d f_ib_b_mps2{Eigen::Vector3d::Zero()};
 };
 
-/// Rounding errors at the Earth's surface: position 2e-9 m, velocity 1e-13 m/s, attitude 1e-14 rad,
-/// rate 1e-13 rad/s, specific force 2e-13 m/s^2. At a break the motion just after it.
+/// The truth at the time t_s; at a break that just after it. Rounding errors at the Earth's
+/// surface: position 2e-9 m, velocity 1e-13 m/s, attitude 1e-14 rad, rate 1e-13 rad/s, specific
+/// force 2e-13 m/s^2.
 /// @throws Error when the trajectory has no motion.
 TruthPoint truth_at(const Trajectory& trajectory, double t_s);
 

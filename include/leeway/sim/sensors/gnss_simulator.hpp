@@ -1,6 +1,6 @@
 /// @file
-/// What a GNSS receiver reports on a trajectory. Its position error is partly correlated over tens
-/// of seconds, which a white covariance cannot show.
+/// GNSS fixes on a trajectory. Their position error is partly correlated over tens of seconds,
+/// which the stated covariance cannot express.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,12 +13,12 @@
 
 namespace leeway::sim {
 
-/// Errors are in north-east-down axes at the antenna, independent of each other.
+/// Errors of a GNSS receiver, independent of each other, in north-east-down axes at the antenna.
 struct GnssErrorModel {
   Eigen::Vector3d position_sigma_n_m{2.5, 2.5, 3.5};       ///< white, >= 0
   Eigen::Vector3d velocity_sigma_n_mps{0.05, 0.05, 0.05};  ///< white, > 0
-  Eigen::Vector3d correlated_sigma_n_m{0.0, 0.0, 0.0};     ///< Gauss-Markov, of position, >= 0
-  double correlation_time_s{60.0};                         ///< of that process, > 0
+  Eigen::Vector3d correlated_sigma_n_m{0.0, 0.0, 0.0};     ///< Gauss-Markov, in position, >= 0
+  double correlation_time_s{60.0};                         ///< of the Gauss-Markov process, > 0
   Eigen::Vector3d lever_arm_b_m{0.0, 0.0, 0.0};            ///< IMU to antenna
 
   static auto visit(auto& c, const auto& visitor) {
@@ -30,18 +30,20 @@ struct GnssErrorModel {
   }
 };
 
-/// @throws Error naming the field, its value and the allowed range. Of the white and the correlated
-/// position sigma of an axis at least one must be > 0, or the reported covariance is singular.
+/// Validation of the model. On each axis the white or the correlated position sigma must be > 0, or
+/// the stated covariance would be singular.
+/// @throws Error naming the field, its value and the allowed range.
 void validate(const GnssErrorModel& model);
 
-/// Fixes at any times that ascend.
+/// A receiver on a trajectory that gives fixes at any ascending times.
 class GnssSimulator {
  public:
+  /// A receiver with its random numbers. The model is validated.
   /// @throws Error when the model is not valid or the trajectory has no motion.
   GnssSimulator(const Trajectory& trajectory, const GnssErrorModel& model, const Random& random);
 
-  /// Antenna position and velocity with their errors. The covariances reported are those of the
-  /// errors made: for position the white plus the correlated variance.
+  /// The fix at t_s: position and velocity of the antenna with their errors. The stated covariances
+  /// are those of the errors: for the position the white plus the correlated variance.
   /// @throws Error unless t_s is finite and later than that of the fix before.
   GnssFix fix_at(double t_s);
 

@@ -1,5 +1,5 @@
 /// @file
-/// IMU error models as TOML, as a datasheet states them: every key carries its unit.
+/// IMU error models in TOML files, as a datasheet states them: every key carries its unit.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,8 @@
 
 namespace leeway::sim {
 
-/// Reads the sections [accelerometer] and [gyro]; what is absent is zero (range: infinite).
+/// The error model in the sections [accelerometer] and [gyro] of a file. Absent values are zero; an
+/// absent range is infinite.
 ///   bias              3 numbers: known constant part    accelerometer: mps2 | mg | ug
 ///   bias_sigma        turn-on spread                    gyro: deg_per_h | deg_per_s | radps
 ///   in_run_sigma      of the drift within a run, together with in_run_tau_s
@@ -25,12 +26,13 @@ namespace leeway::sim {
 ///   g_sensitivity_deg_per_h_per_g                       gyro: 1 number (diagonal) or 3 x 3
 ///   g_sensitivity_sigma_deg_per_h_per_g                 gyro: spread of each of its elements
 /// The key is the name and the unit, as in bias_sigma_mg. g is 9.80665 m/s^2.
-/// @throws Error with path:line:column when the file is unreadable, is no TOML, has an unknown key
-/// (naming the closest), a value of another type or beyond any real sensor (naming the unit in
-/// which it would be plausible), two keys for one quantity, or values that do not go together.
+/// @throws Error with path:line:column when the file is unreadable or no TOML, has an unknown key
+/// or two keys for one quantity, has a value of a wrong type or beyond any real sensor, or values
+/// that contradict each other. The message names the closest key, or the unit that would be
+/// plausible.
 ImuErrorModel read_imu_model(const std::filesystem::path& path);
 
-/// The same from text. @param name  what messages call it
+/// The error model in a text. @param name  name of the text in messages
 ImuErrorModel parse_imu_model(std::string_view text, const std::string& name);
 
 }  // namespace leeway::sim

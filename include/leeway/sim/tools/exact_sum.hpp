@@ -1,6 +1,6 @@
 /// @file
-/// A sum of doubles without rounding: the same bits in any order of the terms, on any number of
-/// threads or machines, in constant memory.
+/// Exact sums of doubles: the same bits in any order of the terms, on any number of threads or
+/// machines, in constant memory.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace leeway::sim {
 
-/// A fixed-point number as wide as the whole range of double: every finite double is a multiple of
-/// 2^-1074 below 2^1024. Room for 2^77 terms of any size.
+/// A fixed-point number as wide as the whole range of double. Every finite double is a multiple of
+/// 2^-1074 and below 2^1024. There is room for 2^77 terms of any size.
 /// Source: Kulisch and Miranker, The Arithmetic of the Digital Computer: A New Approach (1986).
 class ExactSum {
  public:
   void add(double term);
   void add(const ExactSum& other);
 
-  /// The sum rounded once, to nearest, ties to even: +-infinity where it overflows. As with
-  /// operator+, an infinite term makes it infinite; a NaN, or infinities of both signs, NaN.
+  /// The sum, rounded once to nearest, ties to even; +-infinity where it overflows. As with
+  /// operator+, an infinite term gives infinity; a NaN, or infinities of both signs, give NaN.
   double value() const;
 
   bool operator==(const ExactSum&) const = default;
