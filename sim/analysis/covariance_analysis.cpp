@@ -22,22 +22,6 @@ using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then t
 
 constexpr double kSettledRelative = 1e-3;
 
-constexpr std::array<std::string_view, 15> kSourceNames{"initial",
-                                                        "accelerometer_bias",
-                                                        "accelerometer_drift",
-                                                        "accelerometer_noise",
-                                                        "accelerometer_scale",
-                                                        "accelerometer_misalignment",
-                                                        "gyro_bias",
-                                                        "gyro_drift",
-                                                        "gyro_noise",
-                                                        "gyro_scale",
-                                                        "gyro_misalignment",
-                                                        "gyro_g_sensitivity",
-                                                        "gnss_position",
-                                                        "gnss_correlated",
-                                                        "gnss_velocity"};
-
 /// A step must resolve the sensors' in-run drift.
 double step_limit_s(const ImuErrorModel& imu) {
   double shortest_s = std::numeric_limits<double>::infinity();
@@ -199,8 +183,6 @@ Scene perfectly_started(const Scene& scene) {
 }
 
 }  // namespace
-
-std::string_view name(ErrorSource source) { return kSourceNames[static_cast<std::size_t>(source)]; }
 
 ErrorTrack error_track(const Scene& scene, double step_s) {
   const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);

@@ -27,18 +27,6 @@ std::vector<AtlasScene> in_order(std::vector<AtlasScene> scenes) {
 
 }  // namespace
 
-std::string_view name(AtlasVerdict verdict) {
-  constexpr std::array<std::string_view, 3> kNames{"survives", "degrades", "fails"};
-  return kNames[static_cast<std::size_t>(verdict)];
-}
-
-std::string_view name(AtlasGroup group) {
-  constexpr std::array<std::string_view, kAtlasGroups> kNames{
-      "Navigator", "Ekf",       "kernels, double", "kernels, float", "invariant EKF",
-      "reset",     "strapdown", "input",           "not offered"};
-  return kNames[static_cast<std::size_t>(group)];
-}
-
 AtlasVerdict verdict_of(const AtlasLimits& limits, double figure) {
   // Not a number is in no range.
   if (figure <= limits.survives) return AtlasVerdict::kSurvives;

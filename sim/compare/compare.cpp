@@ -61,8 +61,9 @@ std::vector<int> fitting_dividers(const TrialPlan& plan) {
 std::vector<Variant> survivors(const std::vector<Variant>& list,
                                const std::vector<Compared>& compared, double imu_rate_hz) {
   const auto found = [&](const Variant& variant) -> const Compared& {
-    return *std::find_if(compared.begin(), compared.end(),
-                         [&](const Compared& c) { return c.name == name(variant, imu_rate_hz); });
+    return *std::find_if(compared.begin(), compared.end(), [&](const Compared& c) {
+      return c.name == variant_name(variant, imu_rate_hz);
+    });
   };
   const double limit_m = kSurvives * found(Variant{}).accuracy.figures.rms_horizontal_m;
   std::vector<const Compared*> sorted;
@@ -92,7 +93,7 @@ std::vector<Variant> combinations(const std::vector<Compared>& compared,
   for (const Variant& s : survivors(strapdown_variants(dividers), compared, imu_rate_hz)) {
     for (const Variant& c : covariances) {
       const Variant both = combined(s, c);
-      if (names.insert(name(both, imu_rate_hz)).second) result.push_back(both);
+      if (names.insert(variant_name(both, imu_rate_hz)).second) result.push_back(both);
     }
   }
   return result;
@@ -104,7 +105,7 @@ std::vector<Compared> compared_of(const std::vector<Variant>& variants,
   std::vector<Compared> result;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     result.push_back(
-        {variants[v], name(variants[v], imu_rate_hz), costs[v], accuracies[v], {}, false});
+        {variants[v], variant_name(variants[v], imu_rate_hz), costs[v], accuracies[v], {}, false});
   }
   return result;
 }
@@ -151,12 +152,6 @@ double r95_of(std::vector<double> values) {
       static_cast<std::ptrdiff_t>(std::ceil(0.95 * static_cast<double>(values.size())) - 1.0);
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
-}
-
-std::string_view name(Consistency consistency) {
-  constexpr std::array<std::string_view, 6> kNames{"no claim",    "consistent", "optimistic",
-                                                   "pessimistic", "diverged",   "not finite"};
-  return kNames[static_cast<std::size_t>(consistency)];
 }
 
 Consistency consistency_of(const Accuracy& accuracy) {

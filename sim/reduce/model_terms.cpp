@@ -48,74 +48,68 @@ void simplify(BiasStates& biases, BiasState least) {
 
 /// What a filter does without a term, and where that makes a difference.
 struct TermRow {
-  std::string_view name;
   std::string_view substitute;
   void (*drop)(FilterModel&){[](FilterModel&) {}};
   bool (*means_something)(const Scene&){[](const Scene&) { return true; }};
 };
 
 // In the order of ModelTerm.
-constexpr std::array<TermRow, 22> kTerms{{
-    {"earth_rotation", "no turn of the Earth in the attitude",
+constexpr std::array<TermRow, kAll<ModelTerm>.size()> kTerms{{
+    {"no turn of the Earth in the attitude",
      [](FilterModel& m) {
        EarthRotation& rotation = m.config.strapdown.rotation;
        rotation =
            rotation == EarthRotation::kOn ? EarthRotation::kCoriolisAlone : EarthRotation::kOff;
      }},
-    {"coriolis", "no Coriolis",
+    {"no Coriolis",
      [](FilterModel& m) {
        EarthRotation& rotation = m.config.strapdown.rotation;
        rotation = rotation == EarthRotation::kOn ? EarthRotation::kTurnAlone : EarthRotation::kOff;
      }},
-    {"gravity_beyond_j2", "J2 gravity",
+    {"J2 gravity",
      [](FilterModel& m) {
        GravityModel& gravity = m.config.strapdown.gravity;
        if (gravity == GravityModel::kNormal) gravity = GravityModel::kJ2;
      }},
-    {"gravity_beyond_constant", "constant gravity",
+    {"constant gravity",
      [](FilterModel& m) { m.config.strapdown.gravity = GravityModel::kConstant; }},
-    {"gravity_gradient", "no gravity gradient in Phi",
-     [](FilterModel& m) { m.config.gravity_gradient = false; }},
-    {"coning", "no coning",
+    {"no gravity gradient in Phi", [](FilterModel& m) { m.config.gravity_gradient = false; }},
+    {"no coning",
      [](FilterModel& m) {
        Scheme& scheme = m.config.strapdown.scheme;
        scheme = scheme == Scheme::kTwoSample ? Scheme::kSculling : Scheme::kOneSample;
      }},
-    {"sculling", "no sculling",
+    {"no sculling",
      [](FilterModel& m) {
        Scheme& scheme = m.config.strapdown.scheme;
        scheme = scheme == Scheme::kTwoSample ? Scheme::kConing : Scheme::kOneSample;
      }},
-    {"integration_order", "explicit Euler",
-     [](FilterModel& m) { m.config.strapdown.scheme = Scheme::kExplicitEuler; }},
-    {"imu_rate_half", "increments added in pairs",
+    {"explicit Euler", [](FilterModel& m) { m.config.strapdown.scheme = Scheme::kExplicitEuler; }},
+    {"increments added in pairs",
      [](FilterModel& m) { m.imu_divider = std::max(m.imu_divider, 2); },
      [](const Scene& scene) { return divides(scene, 2); }},
-    {"imu_rate_fifth", "increments added in fives",
+    {"increments added in fives",
      [](FilterModel& m) { m.imu_divider = std::max(m.imu_divider, 5); },
      [](const Scene& scene) { return divides(scene, 5); }},
-    {"covariance_0_1_s", "P every 0.1 s",
-     [](FilterModel& m) { raise(m.config.covariance_interval_s, 0.1); },
+    {"P every 0.1 s", [](FilterModel& m) { raise(m.config.covariance_interval_s, 0.1); },
      [](const Scene& scene) { return scene.imu_rate_hz > 10.0; }},
-    {"covariance_1_s", "P every 1 s",
-     [](FilterModel& m) { raise(m.config.covariance_interval_s, 1.0); }},
-    {"double_precision", "P in float", [](FilterModel& m) { m.precision = Precision::kFloat; }},
-    {"accelerometer_bias", "no such states",
-     [](FilterModel& m) { m.config.biases.accelerometer = BiasState::kNone; },
+    {"P every 1 s", [](FilterModel& m) { raise(m.config.covariance_interval_s, 1.0); }},
+    {"P in float", [](FilterModel& m) { m.precision = Precision::kFloat; }},
+    {"no such states", [](FilterModel& m) { m.config.biases.accelerometer = BiasState::kNone; },
      [](const Scene& scene) { return has_bias(scene.filter.imu.accelerometer); }},
-    {"gyro_bias", "no such states", [](FilterModel& m) { m.config.biases.gyro = BiasState::kNone; },
+    {"no such states", [](FilterModel& m) { m.config.biases.gyro = BiasState::kNone; },
      [](const Scene& scene) { return has_bias(scene.filter.imu.gyro); }},
-    {"bias_decay", "biases walk at random",
+    {"biases walk at random",
      [](FilterModel& m) { simplify(m.config.biases, BiasState::kRandomWalk); }, has_gauss_markov},
-    {"bias_drive", "biases are constant",
-     [](FilterModel& m) { simplify(m.config.biases, BiasState::kConstant); }, has_drive},
-    {"lever_arm", "antenna at the IMU", [](FilterModel& m) { m.config.lever_arm_b_m.setZero(); },
+    {"biases are constant", [](FilterModel& m) { simplify(m.config.biases, BiasState::kConstant); },
+     has_drive},
+    {"antenna at the IMU", [](FilterModel& m) { m.config.lever_arm_b_m.setZero(); },
      [](const Scene& scene) { return !scene.gnss.errors.lever_arm_b_m.isZero(0.0); }},
-    {"latency", "fixes valid at arrival", [](FilterModel& m) { m.knows_latency = false; },
+    {"fixes valid at arrival", [](FilterModel& m) { m.knows_latency = false; },
      [](const Scene& scene) { return scene.gnss.latency_s > 0.0; }},
-    {"scale_factors", "no filter models them"},
-    {"misalignments", "no filter models them"},
-    {"g_sensitivity", "no filter models it"},
+    {"no filter models them"},
+    {"no filter models them"},
+    {"no filter models it"},
 }};
 
 const TermRow& row_of(ModelTerm term) { return kTerms[static_cast<std::size_t>(term)]; }
@@ -126,8 +120,6 @@ bool means_something(ModelTerm term, const Scene& scene) {
 }
 
 }  // namespace
-
-std::string_view name(ModelTerm term) { return row_of(term).name; }
 
 std::string_view substitute(ModelTerm term) { return row_of(term).substitute; }
 
@@ -168,8 +160,7 @@ bool may_be_dropped(ModelTerm term) {
 
 std::vector<ModelTerm> terms_of(const Scene& scene) {
   std::vector<ModelTerm> terms;
-  for (std::size_t i = 0; i < kTerms.size(); ++i) {
-    const auto term = static_cast<ModelTerm>(i);
+  for (const ModelTerm term : kAll<ModelTerm>) {
     if (means_something(term, scene)) terms.push_back(term);
   }
   return terms;

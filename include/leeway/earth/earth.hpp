@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "leeway/earth/names.hpp"
+
 namespace leeway {
 
 /// WGS-84 defining parameters: NGA.STND.0036 (2014), table 3.1.
@@ -52,6 +54,7 @@ enum class GravityModel {
   kJ2,        ///< central term and J2; within 1.2e-4 m/s^2 (12 ug) from -10 km up
   kNormal,    ///< the exact normal field; within 1.5e-14 m/s^2, rounding included, from -10 km up
 };
+constexpr auto names(GravityModel) { return std::array{"constant", "j2", "normal"}; }
 
 /// Gravity at r_e (m), in ECEF, m/s^2; its error is that of the model. @pre 6.3e6 < |r_e|.
 /// The normal field is a zonal series to degree 12; the first term left out is below 1e-15 m/s^2.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/gnss_fix.hpp"

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/imu.hpp"

@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
@@ -22,10 +23,12 @@ enum class LineDamage {
   kOutOfRange,
   kTooLong,  ///< LineReader::kMaxLineBytes
 };
-inline constexpr std::size_t kLineDamageCount = 8;
-
-/// Words of a reason, for messages: "not a number".
-std::string_view name(LineDamage reason);
+constexpr auto names(LineDamage) {
+  return std::array{"not a number",   "missing field", "not finite",
+                    "time goes back", "time repeated", "time jumps ahead of the lines after it",
+                    "out of range",   "line too long"};
+}
+inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 
 /// Counts of a log's lines and records, and its damaged lines by reason. A damaged line costs that
 /// line, not the log.

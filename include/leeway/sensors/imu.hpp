@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <utility>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/time.hpp"
 
 namespace leeway {
@@ -32,6 +33,7 @@ enum class RateMeaning {
   kPoint,      ///< value at its time; the increment is the trapezoid of two samples
   kPointHeld,  ///< value at its time, held until the next sample: the seed's explicit Euler
 };
+constexpr auto names(RateMeaning) { return std::array{"mean", "point", "held"}; }
 
 /// The increment between two consecutive samples. @pre from.time < to.time.
 ImuIncrement increment_between(const ImuSample& from, const ImuSample& to, RateMeaning meaning);

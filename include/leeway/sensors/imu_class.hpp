@@ -2,29 +2,19 @@
 /// The five IMU classes of [seed Table 1].
 #pragma once
 
-#include <array>
-#include <string_view>
-
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway {
 
 enum class ImuClass { kMarine, kAviation, kIntermediate, kTactical, kAutomotive };
+constexpr auto names(ImuClass) {
+  return std::array{"marine", "aviation", "intermediate", "tactical", "automotive"};
+}
 
 /// Place in a Table 1 range: its low end, geometric mean, or high end.
 enum class RangeEnd { kLow, kMid, kHigh };
-
-inline constexpr std::array kImuClasses{ImuClass::kMarine, ImuClass::kAviation,
-                                        ImuClass::kIntermediate, ImuClass::kTactical,
-                                        ImuClass::kAutomotive};
-inline constexpr std::array kRangeEnds{RangeEnd::kLow, RangeEnd::kMid, RangeEnd::kHigh};
-
-std::string_view name(ImuClass c);
-std::string_view name(RangeEnd end);
-
-/// @throws Error listing the known names.
-ImuClass imu_class_from_name(std::string_view name);
-RangeEnd range_end_from_name(std::string_view name);
+constexpr auto names(RangeEnd) { return std::array{"low", "mid", "high"}; }
 
 /// Error model of a class. Biases are random constants with the Table 1 drift as their 1-sigma;
 /// there are no scale errors. A bound "< x" is read as the range x/4 to x, "> x" as x alone.

@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "leeway/earth/fields.hpp"
+
 namespace leeway {
 
 /// First-order Gauss-Markov process: stationary sigma and correlation time. A sigma of 0 switches
@@ -15,6 +17,11 @@ namespace leeway {
 struct GaussMarkov {
   double sigma{0.0};
   double tau_s{std::numeric_limits<double>::infinity()};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"sigma", c.sigma, kNotNegative},
+                   Field{"tau_s", c.tau_s, kPositiveOrInfinite});
+  }
 };
 
 /// Exact discretization of a Gauss-Markov process b over a step, and of its integral, which is what
@@ -44,6 +51,15 @@ struct TriadErrorModel {
   GaussMarkov in_run{};                            ///< drift of b within a run, u
   double quantum{0.0};                             ///< LSB of the increment, u*s; 0: none
   double range{std::numeric_limits<double>::infinity()};  ///< saturation, +-u
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"bias", c.bias}, Field{"bias_sigma", c.bias_sigma, kNotNegative},
+                   Field{"M", c.M}, Field{"scale_sigma", c.scale_sigma, kNotNegative},
+                   Field{"misalignment_sigma_rad", c.misalignment_sigma_rad, kNotNegative},
+                   Field{"noise_density", c.noise_density, kNotNegative}, Field{"in_run", c.in_run},
+                   Field{"quantum", c.quantum, kNotNegative},
+                   Field{"range", c.range, kPositiveOrInfinite});
+  }
 };
 
 /// Both triads of an IMU, and what the gyro feels of the specific force.
@@ -52,6 +68,12 @@ struct ImuErrorModel {
   TriadErrorModel gyro{};                                       ///< [seed (2)], rad/s
   Eigen::Matrix3d G_g_radps_per_mps2{Eigen::Matrix3d::Zero()};  ///< gyro g-sensitivity
   double G_g_sigma_radps_per_mps2{0.0};  ///< spread of each element of it from unit to unit
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"accelerometer", c.accelerometer}, Field{"gyro", c.gyro},
+                   Field{"G_g_radps_per_mps2", c.G_g_radps_per_mps2},
+                   Field{"G_g_sigma_radps_per_mps2", c.G_g_sigma_radps_per_mps2, kNotNegative});
+  }
 };
 
 /// @throws Error naming the field, its value and the allowed range: sigmas, densities and quanta

@@ -7,6 +7,8 @@
 #include <array>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/earth/fields.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu.hpp"
 #include "leeway/strapdown/nav_state.hpp"
 
@@ -26,9 +28,20 @@ enum class Scheme {
   kConing,       ///< one sample + coning alone of what two samples add
   kSculling,     ///< one sample + sculling and position curvature alone
 };
+constexpr auto names(Scheme) {
+  return std::array{"explicit-euler", "semi-implicit-euler", "trapezoid", "one-sample",
+                    "two-sample",     "runge-kutta-4",       "coning",    "sculling"};
+}
+/// What `leeway fuse --scheme` called kRungeKutta4 once.
+constexpr std::optional<Scheme> alias(Scheme, std::string_view word) {
+  return word == "rk4" ? std::optional(Scheme::kRungeKutta4) : std::nullopt;
+}
 
 /// Terms of the Earth's rotation: the turn of the frame, which the attitude sees, and Coriolis.
 enum class EarthRotation { kOff, kOn, kTurnAlone, kCoriolisAlone };
+constexpr auto names(EarthRotation) {
+  return std::array{"still", "turning", "turn-alone", "coriolis-alone"};
+}
 
 /// Recent past that a scheme looks back on. It survives a correction of the state, and is forgotten
 /// by itself when the next increment does not follow the last one.
@@ -66,6 +79,11 @@ struct StrapdownPolicy {
   Scheme scheme{Scheme::kTwoSample};
   GravityModel gravity{GravityModel::kNormal};
   EarthRotation rotation{EarthRotation::kOn};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"scheme", c.scheme}, Field{"gravity", c.gravity},
+                   Field{"rotation", c.rotation});
+  }
 };
 
 using StrapdownFunction = StrapdownStep (*)(NavState&, const ImuIncrement&, ImuHistory&);

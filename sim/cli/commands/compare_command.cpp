@@ -38,7 +38,7 @@ std::string number_of(const std::optional<std::size_t>& index) {
 std::string outcome_of(const sim::Accuracy& accuracy) {
   const sim::Consistency consistency = sim::consistency_of(accuracy);
   const sim::CampaignResult& r = accuracy.figures;
-  const std::string word(sim::name(consistency));
+  const std::string word(name(consistency));
   if (consistency == sim::Consistency::kNotFinite) {
     return fmt::format("{}: {} of {}", word, r.not_finite, r.trials);
   }
@@ -117,7 +117,7 @@ Json comparison_json(const sim::Comparison& comparison) {
                     {"r95_m", c.accuracy.r95_m},
                     {"nees", nees_of(c.accuracy)},
                     {"nees_band", {r.nees_low, r.nees_high}},
-                    {"consistency", sim::name(sim::consistency_of(c.accuracy))},
+                    {"consistency", name(sim::consistency_of(c.accuracy))},
                     {"trials_diverged", r.diverged},
                     {"trials_not_finite", r.not_finite},
                     {"front", c.on_front},

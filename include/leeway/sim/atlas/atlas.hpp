@@ -9,9 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
+
 namespace leeway::sim {
 
 enum class AtlasVerdict { kSurvives, kDegrades, kFails };
+constexpr auto names(AtlasVerdict) { return std::array{"survives", "degrades", "fails"}; }
 
 /// What a variant is of: the columns of the matrix of all scenes.
 enum class AtlasGroup {
@@ -25,10 +28,10 @@ enum class AtlasGroup {
   kInput,       ///< what stands before any filter: configuration, readers, time
   kNotOffered,  ///< a method that the library does not have: what the scene shows failing
 };
-inline constexpr std::size_t kAtlasGroups = 9;
-
-std::string_view name(AtlasVerdict verdict);
-std::string_view name(AtlasGroup group);
+constexpr auto names(AtlasGroup) {
+  return std::array{"Navigator", "Ekf",       "kernels, double", "kernels, float", "invariant EKF",
+                    "reset",     "strapdown", "input",           "not offered"};
+}
 
 /// One variant under one condition of a scene.
 struct AtlasCell {
