@@ -9,7 +9,6 @@
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "lib/earth/field_walk.hpp"
-#include "lib/earth/require.hpp"
 
 namespace leeway {
 namespace {

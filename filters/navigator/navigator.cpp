@@ -6,7 +6,6 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/model/claimed_solution.hpp"
 #include "lib/earth/field_walk.hpp"
-#include "lib/earth/require.hpp"
 
 namespace leeway {
 namespace {

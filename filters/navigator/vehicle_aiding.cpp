@@ -6,7 +6,6 @@
 #include "leeway/model/vehicle_measurements.hpp"
 #include "leeway/navigator/aidings.hpp"
 #include "lib/earth/field_walk.hpp"
-#include "lib/earth/require.hpp"
 
 namespace leeway {
 namespace {

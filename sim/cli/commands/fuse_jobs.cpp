@@ -9,7 +9,7 @@
 #include "lib/earth/field_walk.hpp"
 
 namespace leeway::cli {
-namespace {}
+namespace {
 
 /// C_bs of a mount; without one the sensor axes are the body axes.
 Eigen::Matrix3d mount_rotation(const std::optional<Eigen::Vector3d>& rpy_deg,
@@ -108,9 +108,6 @@ FuseJob job_of_drive(const FuseOptions& options, const std::filesystem::path& fo
 }
 
 }  // namespace
-
-return names;
-}
 
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
   if (vehicle.name == "none") return {};
