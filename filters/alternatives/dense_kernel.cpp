@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 namespace {

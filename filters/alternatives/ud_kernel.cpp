@@ -5,6 +5,7 @@
 #include "filters/alternatives/ud_factors.hpp"
 #include "filters/covariance/factored_propagation.hpp"
 #include "filters/covariance/lanes.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 

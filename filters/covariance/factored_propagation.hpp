@@ -9,6 +9,7 @@
 #include "leeway/covariance/covariance_kernel.hpp"
 #include "leeway/covariance/transition.hpp"
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway::lanes {
 

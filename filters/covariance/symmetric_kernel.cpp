@@ -7,6 +7,7 @@
 #include "filters/covariance/lanes.hpp"
 #include "filters/covariance/measurement_update.hpp"
 #include "filters/covariance/symmetric_propagation.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 namespace {
@@ -85,6 +86,16 @@ void SymmetricKernel<Scalar>::propagate(const Transition& Phi, const ProcessNois
 template <class Scalar>
 void SymmetricKernel<Scalar>::propagate(const ErrorDynamics& step, const ProcessNoise& noise) {
   propagate_symmetric<Scalar, kPaddedStates>(P_, step, noise);
+}
+
+template <class Scalar>
+void SymmetricKernel<Scalar>::turn_attitude(const Eigen::Matrix3d& J) {
+  const Eigen::Matrix<Scalar, 3, 3> T = J.cast<Scalar>();
+  Eigen::Matrix<Scalar, 3, kPaddedStates> rows = T * P_.template middleRows<3>(kPsi);
+  const Eigen::Matrix<Scalar, 3, 3> block = rows.template middleCols<3>(kPsi) * T.transpose();
+  rows.template middleCols<3>(kPsi) = Scalar{0.5} * (block + block.transpose());
+  P_.template middleRows<3>(kPsi) = rows;
+  P_.template middleCols<3>(kPsi) = rows.transpose();
 }
 
 template <class Scalar>

@@ -4,6 +4,7 @@
 
 #include "filters/covariance/increment_transition.hpp"
 #include "filters/covariance/lanes.hpp"
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
 
 namespace leeway {

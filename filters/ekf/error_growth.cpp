@@ -4,6 +4,7 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 namespace {
@@ -27,13 +28,13 @@ SteadyMotion steady_motion(const Ekf& filter) {
   motion.down_e = down_e_at(nav.r_e_m);
   motion.C_eb = nav.q_eb.toRotationMatrix();
   motion.gravity_gradient_e = gravity_gradient_e(nav.r_e_m);
-  const Eigen::Vector3d omega_ib_b = filter.mean_omega_ib_b_radps() - bias.b_g_radps;
+  const Eigen::Vector3d omega_ib_b = filter.inertial().mean_omega_ib_b_radps() - bias.b_g_radps;
   motion.turn_radps = motion.down_e.dot(motion.C_eb * omega_ib_b - omega_ie);
   motion.omega_el_radps =
       nav.r_e_m.cross(nav.v_e_mps) / nav.r_e_m.squaredNorm() + motion.turn_radps * motion.down_e;
   motion.f_mps2 = (motion.omega_el_radps + 2.0 * omega_ie).cross(nav.v_e_mps) -
                   gravity_e<GravityModel::kNormal>(nav.r_e_m);
-  motion.noise = filter.noise();
+  motion.noise = filter.inertial().noise();
   return motion;
 }
 

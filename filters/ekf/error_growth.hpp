@@ -8,6 +8,7 @@
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/covariance/transition.hpp"
 #include "leeway/ekf/ekf.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 

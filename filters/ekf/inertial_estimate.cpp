@@ -1,14 +1,16 @@
 #include "leeway/ekf/inertial_estimate.hpp"
 
-#include "filters/covariance/cholesky.hpp"
+#include <algorithm>
+
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 
 InertialEstimate::InertialEstimate(const EkfConfig& config, const Estimate& estimate)
-    : noise_(process_noise(config.imu, config.biases)),
+    : config_(config),
+      noise_(process_noise(config.imu, config.biases)),
       strapdown_step_(strapdown_function(config.strapdown)),
-      lever_arm_b_m_(config.lever_arm_b_m),
       estimate_(estimate) {
   validate(config, estimate);
 }
@@ -18,6 +20,9 @@ ErrorDynamics InertialEstimate::advance(const ImuIncrement& inc) {
   corrected.dtheta_b_rad -= inc.dt_s * estimate_.bias.b_g_radps;
   corrected.dv_b_mps -= inc.dt_s * estimate_.bias.b_a_mps2;
   omega_ib_b_radps_ = 1.0 / inc.dt_s * inc.dtheta_b_rad;
+  mean_rate_window_s_ = std::max(std::min(mean_rate_window_s_ + inc.dt_s, kMeanRateS), inc.dt_s);
+  mean_omega_ib_b_radps_ +=
+      inc.dt_s / mean_rate_window_s_ * (omega_ib_b_radps_ - mean_omega_ib_b_radps_);
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
   const ErrorDynamics dynamics{.dt_s = inc.dt_s,
                                .C_eb_mean = step.C_eb_mean,
@@ -30,19 +35,19 @@ ErrorDynamics InertialEstimate::advance(const ImuIncrement& inc) {
 }
 
 Measurement InertialEstimate::measurement(const GnssFix& fix) const {
-  return gnss_measurement(fix, estimate_, lever_arm_b_m_, omega_ib_b_radps_);
+  return gnss_measurement(fix, estimate_, config_.lever_arm_b_m, omega_ib_b_radps_);
 }
 
-WhiteMeasurement InertialEstimate::white_measurement(const GnssFix& fix,
-                                                     double position_weight) const {
-  const Measurement m = measurement(fix);
-  const Cholesky<6> R_factor(m.R);
-  WhiteMeasurement white{R_factor.whitened(m.H), R_factor.whitened(m.innovation)};
-  if (fix.position) {
-    white.H.topRows<3>() *= position_weight;
-    white.z.head<3>() *= position_weight;
-  }
-  return white;
+void InertialEstimate::turn_body_axes(const Eigen::Matrix3d& C_new_old,
+                                      const Eigen::Vector3d& lever_arm_b_m) {
+  config_.lever_arm_b_m = lever_arm_b_m;
+  estimate_.nav.q_eb =
+      (estimate_.nav.q_eb * Eigen::Quaterniond(C_new_old.transpose())).normalized();
+  estimate_.bias.b_a_mps2 = C_new_old * estimate_.bias.b_a_mps2;
+  estimate_.bias.b_g_radps = C_new_old * estimate_.bias.b_g_radps;
+  omega_ib_b_radps_ = C_new_old * omega_ib_b_radps_;
+  mean_omega_ib_b_radps_ = C_new_old * mean_omega_ib_b_radps_;
+  history_ = ImuHistory{};
 }
 
 }  // namespace leeway

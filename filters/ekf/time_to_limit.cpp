@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "filters/ekf/error_growth.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 namespace {

@@ -1,5 +1,6 @@
 #include "leeway/model/gnss_measurement.hpp"
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
 
 namespace leeway {

@@ -10,40 +10,27 @@ Eigen::Matrix3d vehicle_from_body(const VehicleVector& vehicle) {
   return exp_rotation({0.0, vehicle(kMountPitch), vehicle(kMountYaw)}).transpose();
 }
 
-/// The rear axle's velocity in vehicle axes and its derivatives, one row per axis.
-struct RearAxle {
-  Eigen::Vector3d v_mps;
-  Eigen::Matrix<double, 3, kErrorStates> H{Eigen::Matrix<double, 3, kErrorStates>::Zero()};
-  Eigen::Matrix<double, 3, kVehicleStates> H_vehicle{
-      Eigen::Matrix<double, 3, kVehicleStates>::Zero()};
-
-  RearAxle(const Estimate& estimate, const VehicleVector& vehicle,
-           const Eigen::Vector3d& omega_ib_b_radps) {
-    const Eigen::Matrix3d C_be = estimate.nav.q_eb.toRotationMatrix().transpose();
-    const Eigen::Matrix3d C_vb = vehicle_from_body(vehicle);
-    const Eigen::Vector3d axle_b(vehicle(kRearAxleX), 0.0, 0.0);
-    const Eigen::Vector3d omega_eb_b =
-        omega_ib_b_radps - estimate.bias.b_g_radps - C_be * earth_rotation_e_radps();
-    const Eigen::Vector3d v_b = C_be * estimate.nav.v_e_mps + omega_eb_b.cross(axle_b);
-    v_mps = C_vb * v_b;
-
-    H.middleCols<3>(kPsi) = C_vb * C_be * skew(estimate.nav.v_e_mps) +
-                            C_vb * skew(axle_b) * C_be * skew(earth_rotation_e_radps());
-    H.middleCols<3>(kDv) = C_vb * C_be;
-    H.middleCols<3>(kBg) = C_vb * skew(axle_b);
-    // exp(-[(m + dm) x]) v_b, the mount's turn being small.
-    const Eigen::Matrix3d by_mount = C_vb * skew(v_b);
-    H_vehicle.col(kMountPitch) = by_mount.col(1);
-    H_vehicle.col(kMountYaw) = by_mount.col(2);
-    H_vehicle.col(kRearAxleX) = C_vb * omega_eb_b.cross(Eigen::Vector3d::UnitX());
-  }
-};
-
 }  // namespace
 
-Eigen::Vector3d rear_axle_velocity(const Estimate& estimate, const VehicleVector& vehicle,
-                                   const Eigen::Vector3d& omega_ib_b_radps) {
-  return RearAxle(estimate, vehicle, omega_ib_b_radps).v_mps;
+RearAxle::RearAxle(const Estimate& estimate, const VehicleVector& vehicle,
+                   const Eigen::Vector3d& omega_ib_b_radps) {
+  const Eigen::Matrix3d C_be = estimate.nav.q_eb.toRotationMatrix().transpose();
+  const Eigen::Matrix3d C_vb = vehicle_from_body(vehicle);
+  const Eigen::Vector3d axle_b(vehicle(kRearAxleX), 0.0, 0.0);
+  const Eigen::Vector3d omega_eb_b =
+      omega_ib_b_radps - estimate.bias.b_g_radps - C_be * earth_rotation_e_radps();
+  const Eigen::Vector3d v_b = C_be * estimate.nav.v_e_mps + omega_eb_b.cross(axle_b);
+  v_mps = C_vb * v_b;
+
+  H.middleCols<3>(kPsi) = C_vb * C_be * skew(estimate.nav.v_e_mps) +
+                          C_vb * skew(axle_b) * C_be * skew(earth_rotation_e_radps());
+  H.middleCols<3>(kDv) = C_vb * C_be;
+  H.middleCols<3>(kBg) = C_vb * skew(axle_b);
+  // exp(-[(m + dm) x]) v_b, the mount's turn being small.
+  const Eigen::Matrix3d by_mount = C_vb * skew(v_b);
+  H_vehicle.col(kMountPitch) = by_mount.col(1);
+  H_vehicle.col(kMountYaw) = by_mount.col(2);
+  H_vehicle.col(kRearAxleX) = C_vb * omega_eb_b.cross(Eigen::Vector3d::UnitX());
 }
 
 Measurement non_holonomic(const Estimate& estimate, const VehicleVector& vehicle,
@@ -56,19 +43,6 @@ Measurement non_holonomic(const Estimate& estimate, const VehicleVector& vehicle
   m.H_vehicle = axle.H_vehicle.bottomRows<2>();
   m.R(0, 0) = sigma_right_mps * sigma_right_mps;
   m.R(1, 1) = sigma_down_mps * sigma_down_mps;
-  return m;
-}
-
-Measurement odometer_speed(double speed_mps, double sigma_mps, const Estimate& estimate,
-                           const VehicleVector& vehicle, const Eigen::Vector3d& omega_ib_b_radps) {
-  const RearAxle axle(estimate, vehicle, omega_ib_b_radps);
-  const double scale = 1.0 + vehicle(kOdometerScale);
-  Measurement m(1);
-  m.innovation(0) = speed_mps - scale * axle.v_mps.x();
-  m.H = scale * axle.H.topRows<1>();
-  m.H_vehicle = scale * axle.H_vehicle.topRows<1>();
-  m.H_vehicle(0, kOdometerScale) = axle.v_mps.x();
-  m.R(0, 0) = sigma_mps * sigma_mps;
   return m;
 }
 
@@ -88,17 +62,6 @@ Measurement zero_angular_rate(const Estimate& estimate,
   m.H.middleCols<3>(kPsi) = C_be * skew(earth_rotation_e_radps());
   m.H.middleCols<3>(kBg).setIdentity();
   m.R.diagonal().setConstant(sigma_radps * sigma_radps);
-  return m;
-}
-
-Measurement barometric_height(double height_m, double sigma_m, const Estimate& estimate,
-                              const VehicleVector& vehicle) {
-  const Geodetic place = geodetic_from_ecef(estimate.nav.r_e_m);
-  Measurement m(1);
-  m.innovation(0) = height_m - place.height_m - vehicle(kHeightOffset);
-  m.H.middleCols<3>(kDr) = -ned_to_ecef(place).col(2).transpose();
-  m.H_vehicle(0, kHeightOffset) = 1.0;
-  m.R(0, 0) = sigma_m * sigma_m;
   return m;
 }
 

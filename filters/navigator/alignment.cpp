@@ -4,13 +4,34 @@
 #include <cmath>
 #include <numbers>
 
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {
 namespace {
 
 constexpr double kLongestLagS = 0.3;  // between the halves of a fix
+
+/// Where a fix says, with this attitude.
+Alignment start_at(const GnssFix& fix, const Eigen::Quaterniond& q_eb) {
+  Alignment start;
+  start.estimate.nav.time = fix.time;
+  start.estimate.nav.q_eb = q_eb.normalized();
+  start.estimate.nav.v_e_mps = fix.velocity->v_e_mps;
+  start.estimate.nav.r_e_m = fix.position->r_e_m;
+  return start;
+}
+
+/// The largest of a fix's axes; nothing of the attitude.
+InitialSigma sigma_of(const GnssFix& fix) {
+  InitialSigma sigma;
+  sigma.position_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
+  sigma.velocity_mps = std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
+  return sigma;
+}
 
 }  // namespace
 
@@ -111,25 +132,19 @@ Alignment Aligner::align_by_course(const GnssFix& fix, const GnssVelocity& befor
   EulerAngles rpy = level(since_fix_.dv_b_mps / dt_s, f_level);
   rpy.yaw_rad = course_rad;
 
-  Alignment result;
+  Alignment result = start_at(fix, Eigen::Quaterniond(C_en * rotation_from_euler(rpy)));
   Estimate& estimate = result.estimate;
   const Eigen::Vector3d omega_b = since_fix_.dtheta_b_rad / dt_s;
-  estimate.nav.time = fix.time;
-  estimate.nav.q_eb = Eigen::Quaterniond(C_en * rotation_from_euler(rpy)).normalized();
-  estimate.nav.v_e_mps = fix.velocity->v_e_mps;
-  estimate.nav.r_e_m = fix.position->r_e_m;
   const Eigen::Vector3d lever = filter_.lever_arm_b_m;
   estimate.nav.r_e_m -= antenna_position_e(estimate, lever) - fix.position->r_e_m;
   estimate.nav.v_e_mps -= antenna_velocity_e(estimate, lever, omega_b) - fix.velocity->v_e_mps;
 
-  const double sigma_v_mps = std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
-  InitialSigma sigma;
-  sigma.position_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
-  sigma.velocity_mps = sigma_v_mps;
-  sigma.heading_rad = std::hypot(config_.sideslip_rad, sigma_v_mps / speed_mps, 0.5 * turn_rad);
+  InitialSigma sigma = sigma_of(fix);
+  sigma.heading_rad =
+      std::hypot(config_.sideslip_rad, sigma.velocity_mps / speed_mps, 0.5 * turn_rad);
   sigma.tilt_rad = std::hypot(config_.tilt_floor_rad,
                               filter_.imu.accelerometer.bias_sigma / kStandardGravityMps2,
-                              std::sqrt(2.0) * sigma_v_mps / (dt_s * kStandardGravityMps2));
+                              std::sqrt(2.0) * sigma.velocity_mps / (dt_s * kStandardGravityMps2));
   result.P = initial_covariance(estimate, sigma, filter_.imu);
   set_rest_bias(result);
   return result;
@@ -142,30 +157,21 @@ Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bo
   const Eigen::Vector3d a_e = at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(turn_e / dt_s);
   const Eigen::Vector3d f_e = a_e - gravity_e(GravityModel::kNormal, fix.position->r_e_m);
 
-  Alignment result;
-  Estimate& estimate = result.estimate;
-  estimate.nav.time = fix.time;
-  estimate.nav.q_eb = Eigen::Quaterniond::FromTwoVectors(f_b, f_e).normalized();
+  Alignment result = start_at(fix, Eigen::Quaterniond::FromTwoVectors(f_b, f_e));
+  Eigen::Quaterniond& q_eb = result.estimate.nav.q_eb;
   // The measured force is the mean of the interval, the attitude wanted that of its end.
   const Eigen::Vector3d half_turn_b = 0.5 * since_fix_.dtheta_b_rad;
-  if (!at_rest) {
-    estimate.nav.q_eb = (estimate.nav.q_eb * exp_quaternion(half_turn_b)).normalized();
-  }
-  estimate.nav.v_e_mps = fix.velocity->v_e_mps;
-  estimate.nav.r_e_m = fix.position->r_e_m;
+  if (!at_rest) q_eb = (q_eb * exp_quaternion(half_turn_b)).normalized();
   result.axis_e = f_e.normalized();
   result.turn_sigma_rad = std::numbers::pi;
 
-  const double sigma_v_mps = std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
-  const double sigma_a_mps2 = at_rest ? 0.0 : std::sqrt(2.0) * sigma_v_mps / dt_s;
-  InitialSigma sigma;
-  sigma.position_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
-  sigma.velocity_mps = sigma_v_mps;
+  InitialSigma sigma = sigma_of(fix);
+  const double sigma_a_mps2 = at_rest ? 0.0 : std::sqrt(2.0) * sigma.velocity_mps / dt_s;
   sigma.tilt_rad =
       std::hypot(config_.tilt_floor_rad,
                  std::hypot(filter_.imu.accelerometer.bias_sigma, sigma_a_mps2) / f_e.norm());
   sigma.heading_rad = sigma.tilt_rad;
-  result.P = initial_covariance(estimate, sigma, filter_.imu);
+  result.P = initial_covariance(result.estimate, sigma, filter_.imu);
   // The turn about the axis is told apart from the rest.
   transform_block(result.P, kPsi,
                   Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose());

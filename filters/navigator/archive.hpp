@@ -26,6 +26,17 @@ class Archive {
     (visit(values), ...);
   }
 
+  /// @param filler  takes the room of a value that is absent
+  template <class T>
+  void optional(std::optional<T>& value, const T& filler) {
+    bool there = value.has_value();
+    visit(there);
+    T content = value.value_or(filler);
+    visit(content);
+    if (there) value = content;
+    if (!there) value.reset();
+  }
+
  private:
   template <class T>
   static constexpr bool kIsPlain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -46,6 +57,9 @@ class Archive {
   void visit(T& value) {
     if constexpr (kIsPlain<T>) {
       self().bytes(&value, sizeof(T));
+    } else if constexpr (AidingReading<T>) {
+      auto& [time, number, sigma] = value;
+      (*this)(time, number, sigma);
     } else {
       value.visit(self());
     }
@@ -73,13 +87,7 @@ class Archive {
 
   template <class T>
   void visit(std::optional<T>& value) {
-    bool there = value.has_value();
-    visit(there);
-    T content = blank<T>();
-    if (value) content = *value;
-    visit(content);
-    if (there) value = content;
-    if (!there) value.reset();
+    optional(value, blank<T>());
   }
 
   template <class T, std::size_t N>
@@ -114,9 +122,7 @@ class Archive {
   void visit(GnssPosition& s) { (*this)(s.r_e_m, s.R_e_m2); }
   void visit(GnssVelocity& s) { (*this)(s.v_e_mps, s.R_e_m2ps2); }
   void visit(GnssFix& s) { (*this)(s.time, s.position, s.velocity); }
-  void visit(OdometerSpeed& s) { (*this)(s.time, s.speed_mps, s.sigma_mps); }
-  void visit(BarometricHeight& s) { (*this)(s.time, s.height_m, s.sigma_m); }
-  void visit(Event& s) { (*this)(s.time, s.data, s.counts, s.done, s.verdict); }
+  void visit(Event& s) { (*this)(s.time, s.reading, s.counts, s.done, s.verdict); }
   void visit(Step& s) { (*this)(s.inc, s.is_gap); }
   void visit(VehicleState& s) { (*this)(s.value, s.P, s.cross, s.random_walk_per_s); }
   void visit(Transition& s) { (*this)(s.dt_s, s.psi, s.v, s.r, s.a_a, s.g_g); }

@@ -57,9 +57,11 @@ bool GateRecovery::comes_back(Time t) {
 void restart_motion(Ekf& filter, const GnssFix& fix) {
   const Eigen::Matrix3d unknown =
       kUnknownVelocityMps * kUnknownVelocityMps * Eigen::Matrix3d::Identity();
-  filter.restart_motion(fix.position->r_e_m, fix.position->R_e_m2,
-                        fix.velocity ? fix.velocity->v_e_mps : filter.estimate().nav.v_e_mps,
-                        fix.velocity ? fix.velocity->R_e_m2ps2 : unknown);
+  edit(filter, [&](Belief& belief) {
+    restart_motion(belief, fix.position->r_e_m, fix.position->R_e_m2,
+                   fix.velocity ? fix.velocity->v_e_mps : belief.estimate.nav.v_e_mps,
+                   fix.velocity ? fix.velocity->R_e_m2ps2 : unknown);
+  });
 }
 
 }  // namespace leeway

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/model/gnss_measurement.hpp"
@@ -94,26 +95,26 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
 double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
 
 // p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
-double HeadingBank::evidence_weight(const UpdateOutcome& report) {
+double HeadingBank::evidence_weight(const UpdateOutcome& outcome) {
   std::optional<Time>& last =
-      last_evidence_[static_cast<std::size_t>(std::clamp(report.dof, 0, 6))];
+      last_evidence_[static_cast<std::size_t>(std::clamp(outcome.dof, 0, 6))];
   const double root =
-      last ? gnss_position_weight(to_seconds(report.time - *last), kEvidenceCorrelationS) : 1.0;
-  last = report.time;
+      last ? gnss_position_weight(to_seconds(outcome.time - *last), kEvidenceCorrelationS) : 1.0;
+  last = outcome.time;
   return root * root;
 }
 
-void HeadingBank::weigh(const Reports& reports) {
+void HeadingBank::weigh(const Outcomes& outcomes) {
   const auto fused = [](const UpdateOutcome& r) {
     return r.outcome == UpdateOutcome::Outcome::kFused;
   };
-  if (std::none_of(reports.begin(), reports.end(), fused)) return;
-  const double weight = evidence_weight(*std::find_if(reports.begin(), reports.end(), fused));
+  if (std::none_of(outcomes.begin(), outcomes.end(), fused)) return;
+  const double weight = evidence_weight(*std::find_if(outcomes.begin(), outcomes.end(), fused));
   std::array<double, kMaxFilters> surprise{};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     if (!members_[k]) continue;
-    const UpdateOutcome& r = reports[k];
+    const UpdateOutcome& r = outcomes[k];
     surprise[k] = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
     const bool broken =
         r.outcome == UpdateOutcome::Outcome::kUnusable || !std::isfinite(surprise[k]);

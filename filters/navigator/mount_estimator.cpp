@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/model/heading.hpp"
 
 namespace leeway {
 
@@ -15,7 +16,8 @@ void MountEstimator::push(const HeadingBank& bank) {
       previous_ ? std::min(to_seconds(nav.time - *previous_), kLongestStepS) : 0.0;
   previous_ = nav.time;
   const double speed_mps = nav.v_e_mps.norm();
-  const Eigen::Vector3d rate = filter.mean_omega_ib_b_radps() - filter.estimate().bias.b_g_radps;
+  const Eigen::Vector3d rate =
+      filter.inertial().mean_omega_ib_b_radps() - filter.estimate().bias.b_g_radps;
   if (speed_mps < kMinSpeedMps || rate.norm() > kMaxTurnRadps) return;
   const double variance_rad2 = heading_variance_rad2(filter.estimate(), bank.covariance());
   if (variance_rad2 > kMaxHeadingSigmaRad * kMaxHeadingSigmaRad) return;

@@ -2,26 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
-#include "leeway/model/vehicle_measurements.hpp"
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/heading.hpp"
 
 namespace leeway {
 namespace {
 
 constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
 
-AlignmentConfig alignment_of(const NavigatorConfig& config) {
-  AlignmentConfig alignment = config.alignment;
-  // A bank of headings with the non-holonomic constraint finds the course as the heading by itself,
-  // slip and turns included.
-  if (!config.C_bs || config.vehicle.non_holonomic) alignment.heading_from_course = false;
-  return alignment;
-}
-
 EkfConfig filter_of(const NavigatorConfig& config) {
   EkfConfig filter = config.filter;
   if (!config.C_bs) filter.lever_arm_b_m.setZero();  // where it points is not known yet
   return filter;
+}
+
+Aligner aligner_of(const NavigatorConfig& config) {
+  AlignmentConfig alignment = config.alignment;
+  // A bank of headings with the non-holonomic constraint finds the course as the heading by itself,
+  // slip and turns included.
+  if (!config.C_bs || config.vehicle.non_holonomic) alignment.heading_from_course = false;
+  return Aligner(alignment, filter_of(config));
 }
 
 /// Several headings about the one of the estimate.
@@ -39,13 +42,23 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
   return result;
 }
 
+bool is_sane(HeadingBank& bank) {
+  bool all = true;
+  bank.for_each([&](const Ekf& filter) {
+    all = all && leeway::is_sane(filter.estimate(), filter.kernel().matrix());
+  });
+  return all;
+}
+
 }  // namespace
 
-Ekf NavigatorState::any_filter() const { return filter_anywhere(filter_of(config_)); }
+HeadingBank NavigatorState::any_bank() const {
+  return HeadingBank(filter_anywhere(filter_of(config_)));
+}
 
 NavigatorState::NavigatorState(const NavigatorConfig& config)
     : config_(config),
-      aligner_(alignment_of(config), filter_of(config)),
+      aligner_(aligner_of(config)),
       aiding_(config.vehicle, config.filter.imu),
       C_bs_(config.C_bs) {
   validate(config);
@@ -61,7 +74,8 @@ void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
 
 void NavigatorState::begin(const HeadingBank& bank) {
   bank_ = bank;
-  note_fused(bank_->best().estimate().nav.time);
+  last_fused_ = bank_->best().estimate().nav.time;
+  gate_recovery_.end();
   if (C_bs_) begin_vehicle();
 }
 
@@ -75,7 +89,8 @@ void NavigatorState::begin_vehicle() {
       vehicle.P(angle, angle) = std::max(vehicle.P(angle, angle), kFound * kFound);
     }
   }
-  bank_->for_each([&](Ekf& filter) { filter.estimate_vehicle(vehicle); });
+  bank_->for_each(
+      [&](Ekf& filter) { edit(filter, [&](Belief& belief) { belief.vehicle = vehicle; }); });
 }
 
 void NavigatorState::integrate(const ImuIncrement& inc) {
@@ -86,51 +101,69 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
   aiding_.push(in_body, *bank_);
   if (rested && !aiding_.at_rest()) open_heading();
   // From numbers that were sound when P was last propagated, a few samples cannot reach infinity.
-  if (bank_->best().covariance_is_current()) guard_numbers();
+  if (bank_->best().covariance_is_current() && !is_sane(*bank_)) realign();
 }
 
 void NavigatorState::open_heading() {
   if (!bank_->collapsed()) return;
   const Ekf& filter = bank_->best();
-  const double sigma_rad = filter.heading_sigma_rad();
+  const double sigma_rad = heading_sigma_rad(filter);
   const ErrorMatrix P = filter.covariance();
   // What a new filter would refuse to start from goes on in the old one: push does not throw.
   constexpr double kLowestM = 6.35e6;  // from the Earth's centre
-  const bool can_start = filter.is_sane() && P.diagonal().minCoeff() > 0.0 &&
+  const bool can_start = is_sane(filter.estimate(), P) && P.diagonal().minCoeff() > 0.0 &&
                          filter.estimate().nav.r_e_m.norm() > kLowestM;
   if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
-  VehicleState vehicle = filter.vehicle();
-  vehicle.cross.setZero();
-  const bool estimates_vehicle = filter.estimates_vehicle();
-  bank_ = bank_around(filter.config(), filter.estimate(), P, sigma_rad);
-  if (!estimates_vehicle) return;
-  bank_->for_each([&](Ekf& member) { member.estimate_vehicle(vehicle); });
+  std::optional<VehicleState> vehicle = filter.vehicle();
+  bank_ = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
+  if (!vehicle) return;
+  vehicle->cross.setZero();
+  bank_->for_each(
+      [&](Ekf& member) { edit(member, [&](Belief& belief) { belief.vehicle = vehicle; }); });
 }
 
 void NavigatorState::bridge(Time to) {
   if (!bank_) {
     // What was collected before a hole says nothing about the attitude after it.
-    aligner_ = Aligner(alignment_of(config_), filter_of(config_));
+    aligner_ = aligner_of(config_);
     return;
   }
-  bank_->for_each([&](Ekf& filter) { filter.coast(to); });
+  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to); });
 }
 
-Verdict NavigatorState::fuse(const GnssFix& fix) {
+Verdict NavigatorState::fuse(const Reading& reading) {
+  return std::visit([this](const auto& r) { return take(r); }, reading);
+}
+
+template <AidingReading R>
+Verdict NavigatorState::take(const R& reading) {
+  if (!(config_.vehicle.*R::kIsOn)) return Verdict::kUnused;
+  if (!bank_ || !C_bs_) return Verdict::kAligning;
+  const UpdateOutcome update = bank_->update([&](Ekf& filter) {
+    return filter.update(measurement(reading, filter.estimate(), filter.vehicle()->value,
+                                     filter.inertial().omega_ib_b_radps()));
+  });
+  return update.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
+}
+
+Verdict NavigatorState::take(const GnssFix& fix) {
   if (!bank_) {
     align(fix);
     return Verdict::kAligning;
   }
-  if (bank_->best().heading_sigma_rad() > kOpenRad) open_heading();
+  if (heading_sigma_rad(bank_->best()) > kOpenRad) open_heading();
   last_update_ = bank_->update([&](Ekf& filter) {
-    const bool hides = aiding_.at_rest() && filter.rest_hides_heading();
+    const bool hides = aiding_.at_rest() && rest_hides_heading(filter);
     return filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
                                hides ? Held::kHeadingAndTurn : Held::kNothing});
   });
   const Verdict verdict = settle(fix);
-  if (bank_) guard_numbers();
-  if (bank_) watch_covariance();
-  if (bank_ && !C_bs_) find_mount();
+  if (bank_ && !is_sane(*bank_)) realign();
+  if (!bank_) return verdict;
+  bank_->for_each([this](Ekf& filter) {
+    if (!repair_covariance(filter)) ++repairs_;
+  });
+  if (!C_bs_) find_mount();
   return verdict;
 }
 
@@ -141,53 +174,51 @@ void NavigatorState::align(const GnssFix& fix) {
                     found->turn_sigma_rad));
 }
 
-void NavigatorState::note_fused(Time t) {
-  last_fused_ = t;
-  gate_recovery_.end();
-}
-
 Verdict NavigatorState::settle(const GnssFix& fix) {
   using Outcome = UpdateOutcome::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
+  const bool is_gated = last_update_.outcome == Outcome::kGated;
   // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
   // distance is not one that the estimate has drifted.
-  const bool outlier = last_update_.outcome == Outcome::kGated && !gate_recovery_.is_row();
-  if (bank_->collapsed() && !outlier) {
-    if (fix.position) {
-      position_noise_.note(fix.time, last_update_.position_innovation_e_m, fix.position->R_e_m2,
-                           last_update_.position_nis);
-    }
-    if (fix.velocity) {
-      velocity_noise_.note(fix.time, last_update_.velocity_innovation_e_mps,
-                           fix.velocity->R_e_m2ps2, last_update_.velocity_nis);
-    }
-    follow_drift();
-  }
-  if (last_update_.outcome == Outcome::kGated) return locked_out(fix);
+  if (bank_->collapsed() && (!is_gated || gate_recovery_.is_row())) learn_noise(fix);
+  if (is_gated) return recover(fix);
   last_fused_ = fix.time;
   gate_recovery_.fused(fix);
   return Verdict::kFused;
 }
 
-void NavigatorState::follow_drift() {
+void NavigatorState::learn_noise(const GnssFix& fix) {
+  const UpdateOutcome& u = last_update_;
+  if (fix.velocity) {
+    velocity_noise_.note(fix.time, u.velocity_innovation_e_mps, fix.velocity->R_e_m2ps2,
+                         u.velocity_nis);
+  }
+  if (fix.position) {
+    position_noise_.note(fix.time, u.position_innovation_e_m, fix.position->R_e_m2, u.position_nis);
+  }
   // Positions that keep away from the prediction by more than both claim, and agree with each
   // other, are believed at last: a receiver that settles, or one that was wrong before.
   constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
   constexpr double kShare = 0.1;       // of the squared distance, at each fix
   if (!position_noise_.has_full_window() || position_noise_.nis_ratio() < kDriftRatio) return;
-  bank_->best().widen_position(kShare / 3.0 * last_update_.position_innovation_e_m.squaredNorm());
+  const double variance_m2 = kShare / 3.0 * u.position_innovation_e_m.squaredNorm();
+  edit(bank_->best(),
+       [&](Belief& belief) { belief.P.diagonal().segment<3>(kDr).array() += variance_m2; });
 }
 
-Verdict NavigatorState::locked_out(const GnssFix& fix) {
+Verdict NavigatorState::recover(const GnssFix& fix) {
   switch (gate_recovery_.refused(fix)) {
     case GateRecovery::Remedy::kWait:
       return Verdict::kGated;
     case GateRecovery::Remedy::kWiden:
-      bank_->for_each([](Ekf& filter) { filter.widen(GateRecovery::kWidening); });
+      bank_->for_each([](Ekf& filter) {
+        edit(filter, [](Belief& belief) { widen(belief, GateRecovery::kWidening); });
+      });
       return Verdict::kGated;
     case GateRecovery::Remedy::kRestart:
       bank_->for_each([&fix](Ekf& filter) { restart_motion(filter, fix); });
-      note_fused(fix.time);
+      last_fused_ = fix.time;
+      gate_recovery_.end();
       break;
     case GateRecovery::Remedy::kRealign:
       realign();
@@ -201,21 +232,9 @@ void NavigatorState::realign() {
   ++realignments_;
   gate_recovery_.realigned(bank_->best().estimate().nav.time);
   bank_.reset();
-  aligner_ = Aligner(alignment_of(config_), filter_of(config_));
+  aligner_ = aligner_of(config_);
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
-}
-
-void NavigatorState::guard_numbers() {
-  bool sane = true;
-  bank_->for_each([&](Ekf& filter) { sane = sane && filter.is_sane(); });
-  if (!sane) realign();
-}
-
-void NavigatorState::watch_covariance() {
-  bank_->for_each([this](Ekf& filter) {
-    if (!filter.repair_covariance()) ++repairs_;
-  });
 }
 
 void NavigatorState::find_mount() {
@@ -227,27 +246,37 @@ void NavigatorState::find_mount() {
   begin_vehicle();
 }
 
-Verdict NavigatorState::fuse(const OdometerSpeed& odometer) {
-  return aid(config_.vehicle.odometer, [&odometer](const Ekf& filter) {
-    return odometer_speed(odometer.speed_mps, odometer.sigma_mps, filter.estimate(),
-                          filter.vehicle().value, filter.omega_ib_b_radps());
-  });
-}
-
-Verdict NavigatorState::fuse(const BarometricHeight& barometer) {
-  return aid(config_.vehicle.barometer, [&barometer](const Ekf& filter) {
-    return barometric_height(barometer.height_m, barometer.sigma_m, filter.estimate(),
-                             filter.vehicle().value);
-  });
-}
-
-template <class F>
-Verdict NavigatorState::aid(bool is_on, F&& measurement) {
-  if (!is_on) return Verdict::kUnused;
-  if (!bank_ || !C_bs_) return Verdict::kAligning;
-  const UpdateOutcome report =
-      bank_->update([&](Ekf& filter) { return filter.update(measurement(filter)); });
-  return report.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
+Health NavigatorState::health(Time now) const {
+  constexpr double kCoastingS = 2.0;
+  Health health{.mount_known = C_bs_.has_value(),
+                .at_rest = aiding_.at_rest(),
+                .repairs = repairs_,
+                .resets = resets_,
+                .realignments = realignments_};
+  if (!bank_) return health;
+  const auto since = [now](const std::optional<Time>& then) {
+    return then ? std::max(0.0, to_seconds(now - *then)) : 0.0;
+  };
+  health.coasting_s = since(last_fused_);
+  health.gating_s = since(gate_recovery_.since());
+  health.position_nis_ratio = position_noise_.nis_ratio();
+  health.velocity_nis_ratio = velocity_noise_.nis_ratio();
+  health.position_sigma_scale = position_noise_.sigma_scale();
+  health.velocity_sigma_scale = velocity_noise_.sigma_scale();
+  health.correlated_fixes =
+      config_.filter.gnss_correlation_s == 0.0 && position_noise_.errors_last();
+  health.optimistic_by =
+      std::sqrt(std::max({1.0, health.position_nis_ratio, health.velocity_nis_ratio}));
+  using State = Health::State;
+  const bool is_inconsistent = gate_recovery_.distrusts_imu() ||
+                               position_noise_.is_inconsistent() ||
+                               velocity_noise_.is_inconsistent();
+  health.state = gate_recovery_.is_row()          ? State::kGating
+                 : health.coasting_s > kCoastingS ? State::kCoasting
+                 : !bank_->collapsed()            ? State::kHeadingOpen
+                 : is_inconsistent                ? State::kInconsistent
+                                                  : State::kAligned;
+  return health;
 }
 
 }  // namespace leeway

@@ -8,6 +8,7 @@ namespace leeway {
 namespace {
 
 constexpr std::size_t kMaxEvents = 256;
+constexpr std::size_t kStreams = std::variant_size_v<Reading> + 1;
 
 std::size_t step_capacity(const TimingConfig& timing, double checkpoint_s) {
   return static_cast<std::size_t>(
@@ -19,63 +20,79 @@ std::size_t checkpoint_capacity(const TimingConfig& timing, double checkpoint_s)
 }
 
 bool same_kind(const Event& a, const Event& b) {
-  if (a.data.index() != b.data.index()) return false;
-  const auto* fix_a = std::get_if<GnssFix>(&a.data);
-  const auto* fix_b = std::get_if<GnssFix>(&b.data);
+  if (a.reading.index() != b.reading.index()) return false;
+  const auto* fix_a = std::get_if<GnssFix>(&a.reading);
+  const auto* fix_b = std::get_if<GnssFix>(&b.reading);
   return fix_a == nullptr || (fix_a->position && fix_b->position) ||
          (fix_a->velocity && fix_b->velocity);
 }
 
 /// The order in which events act.
 bool acts_before(const Event& a, const Event& b) {
-  return a.time != b.time ? a.time < b.time : a.data.index() < b.data.index();
+  return a.time != b.time ? a.time < b.time : a.reading.index() < b.reading.index();
 }
 
 }  // namespace
 
 Timeline::Timeline(const NavigatorConfig& config)
     : config_(config),
-      fusion_(config),
+      state_(config),
       steps_(step_capacity(config.timing, kCheckpointS), Step{}),
       events_(kMaxEvents, Event{}),
-      checkpoints_(checkpoint_capacity(config.timing, kCheckpointS), Checkpoint{fusion_}) {}
+      checkpoints_(checkpoint_capacity(config.timing, kCheckpointS), Checkpoint{state_}),
+      streams_(kStreams, Stream{Checkpoint{state_}}) {}
 
-void Timeline::restart(const NavigatorState& fusion, Time now) {
-  fusion_ = fusion;
+void Timeline::restart(const NavigatorState& state, Time now) {
+  state_ = state;
   now_ = now;
   steps_forgotten_ += steps_.size();
   steps_.clear();
   checkpoints_.clear();
-  checkpoints_.push_back({fusion_, now, steps_forgotten_});
+  keep(checkpoints_.extend(), 0);
+  forget_streams();
   while (!events_.empty() && events_.front().time < now) {
-    const Event& event = events_.front();
-    if (!event.done) refuse(event, Verdict::kLate);
+    if (!events_.front().done) note(events_.front(), Verdict::kLate);
     events_.pop_front();
   }
 }
 
 void Timeline::push(const Step& step) {
-  if (!now_) restart(fusion_, step.inc.time - duration_from_seconds(step.inc.dt_s));
+  if (!now_) restart(state_, step.inc.time - duration_from_seconds(step.inc.dt_s));
   if (steps_.full()) {
     if (checkpoints_.size() > 1) checkpoints_.pop_front();
     forget_old();
   }
   // A checkpoint further back than the room for steps leads nowhere.
-  if (steps_.full()) restart(fusion_, *now_);
+  if (steps_.full()) restart(state_, *now_);
   steps_.push_back(step);
-  run(step);
-  keep_checkpoint();
+  run(steps_.size() - 1);
+  if (!is_checkpoint_due()) return;
+  if (checkpoints_.full()) checkpoints_.pop_front();
+  keep(checkpoints_.extend(), steps_.size());
+  const Duration lateness = duration_from_seconds(config_.timing.max_lateness_s);
+  while (checkpoints_.size() > 1 && checkpoints_[1].time < *now_ - lateness) {
+    checkpoints_.pop_front();
+  }
+  forget_old();
 }
 
-void Timeline::run(const Step& step) {
-  ImuIncrement rest = step.inc;
-  for (std::size_t k = 0; k < events_.size() && events_[k].time <= step.inc.time; ++k) {
+void Timeline::run(std::size_t step) {
+  const auto& [inc, is_gap] = steps_[step];
+  // A step early: what is expected may come a little before.
+  const Time next_end = inc.time + (inc.time - *now_);
+  for (Stream& stream : streams_) {
+    if (stream.next > next_end) continue;
+    stream.next = Time::max();
+    keep(stream.before, step);
+  }
+  ImuIncrement rest = inc;
+  for (std::size_t k = 0; k < events_.size() && events_[k].time <= inc.time; ++k) {
     if (events_[k].done) continue;
-    integrate(step, events_[k].time, rest);
+    integrate(steps_[step], events_[k].time, rest);
     decide(events_[k]);
   }
-  integrate(step, step.inc.time, rest);
-  now_ = step.inc.time;
+  integrate(steps_[step], inc.time, rest);
+  now_ = inc.time;
 }
 
 void Timeline::integrate(const Step& step, Time to, ImuIncrement& rest) {
@@ -87,40 +104,29 @@ void Timeline::integrate(const Step& step, Time to, ImuIncrement& rest) {
   } else {
     rest.dt_s = 0.0;
   }
-  step.is_gap ? fusion_.bridge(to) : fusion_.integrate(before);
+  step.is_gap ? state_.bridge(to) : state_.integrate(before);
 }
 
 void Timeline::decide(Event& event) {
-  const Verdict verdict =
-      std::visit([this](const auto& measurement) { return fusion_.fuse(measurement); }, event.data);
-  if (event.counts) {
-    if (event.verdict != Verdict::kAccepted) {
-      --ledger_[static_cast<std::size_t>(event.verdict)];
-    }
-    ++ledger_[static_cast<std::size_t>(verdict)];
-  }
-  event.verdict = verdict;
+  note(event, state_.fuse(event.reading));
   event.done = true;
 }
 
-Verdict Timeline::refuse(const Event& event, Verdict verdict) {
-  if (event.counts) ++ledger_[static_cast<std::size_t>(verdict)];
-  return verdict;
+Verdict Timeline::note(Event& event, Verdict verdict) {
+  const auto count_of = [this](Verdict v) -> auto& { return ledger_[static_cast<std::size_t>(v)]; };
+  if (event.counts && event.verdict != Verdict::kAccepted) --count_of(event.verdict);
+  if (event.counts) ++count_of(verdict);
+  return event.verdict = verdict;
 }
 
 bool Timeline::is_checkpoint_due() const {
   return to_seconds(*now_ - checkpoints_.back().time) >= kCheckpointS;
 }
 
-void Timeline::keep_checkpoint() {
-  if (!is_checkpoint_due()) return;
-  if (checkpoints_.full()) checkpoints_.pop_front();
-  checkpoints_.push_back({fusion_, *now_, steps_forgotten_ + steps_.size()});
-  const Duration lateness = duration_from_seconds(config_.timing.max_lateness_s);
-  while (checkpoints_.size() > 1 && checkpoints_[1].time < *now_ - lateness) {
-    checkpoints_.pop_front();
-  }
-  forget_old();
+void Timeline::keep(Checkpoint& checkpoint, std::size_t next_step) const {
+  checkpoint.state = state_;
+  checkpoint.time = *now_;
+  checkpoint.next_step = steps_forgotten_ + next_step;
 }
 
 void Timeline::forget_old() {
@@ -134,26 +140,43 @@ void Timeline::forget_old() {
   }
 }
 
-Verdict Timeline::push(const Event& event) {
+void Timeline::forget_streams() {
+  for (Stream& s : streams_) s.before.time = s.newest = s.next = Time::max();
+}
+
+void Timeline::expect_after(const Event& event, bool is_late) {
+  Stream& stream = streams_[event.counts ? event.reading.index() : kStreams - 1];
+  // One that waits for IMU data needs no way back.
+  stream.next = is_late && event.time > stream.newest ? event.time + (event.time - stream.newest)
+                                                      : Time::max();
+  stream.newest = event.time;
+}
+
+Verdict Timeline::push(Event event) {
   if (events_.full()) make_room();
   const bool within = now_ && event.time <= *now_;
   if (within && (event.time <= checkpoints_.front().time ||
                  to_seconds(*now_ - event.time) > config_.timing.max_lateness_s)) {
-    return refuse(event, Verdict::kLate);
+    return note(event, Verdict::kLate);
   }
   std::size_t place = 0;
   while (place < events_.size() && !acts_before(event, events_[place])) {
     if (events_[place].time == event.time && same_kind(events_[place], event)) {
-      return refuse(event, Verdict::kDuplicate);
+      return note(event, Verdict::kDuplicate);
     }
     ++place;
   }
-  if (events_.full()) return refuse(event, Verdict::kOverflow);
+  if (events_.full()) return note(event, Verdict::kOverflow);
   events_.insert(place, event);
+  expect_after(event, within);
   if (!within) return Verdict::kAccepted;
-  std::size_t checkpoint = checkpoints_.size() - 1;
-  while (checkpoints_[checkpoint].time >= event.time) --checkpoint;
-  rewind(checkpoint);
+  const bool is_last = place + 1 == events_.size() || events_[place + 1].time > *now_;
+  if (event.time < *now_ || !is_last) {
+    go_back_to(newest_before(event.time));
+  } else {
+    decide(events_[place]);
+    if (checkpoints_.back().time == *now_) checkpoints_.back().state = state_;
+  }
   return events_[place].verdict;
 }
 
@@ -162,23 +185,33 @@ void Timeline::make_room() {
     checkpoints_.pop_front();
     forget_old();
   }
-  if (events_.full() && events_.front().done) restart(fusion_, *now_);
+  if (events_.full() && events_.front().done) restart(state_, *now_);
 }
 
-void Timeline::rewind(std::size_t checkpoint) {
-  while (checkpoints_.size() > checkpoint + 1) checkpoints_.pop_back();
-  const Checkpoint& from = checkpoints_.back();
-  fusion_ = from.fusion;
-  now_ = from.time;
-  for (std::size_t k = 0; k < events_.size(); ++k) {
-    if (events_[k].time > from.time) events_[k].done = false;
+const Timeline::Checkpoint& Timeline::newest_before(Time t) const {
+  const Checkpoint* newest = &checkpoints_.front();
+  const auto take = [&](const Checkpoint& c) {
+    if (c.time < t && c.time > newest->time) newest = &c;
+  };
+  for (std::size_t k = 1; k < checkpoints_.size(); ++k) take(checkpoints_[k]);
+  for (const Stream& stream : streams_) take(stream.before);
+  return *newest;
+}
+
+void Timeline::go_back_to(const Checkpoint& checkpoint) {
+  state_ = checkpoint.state;
+  now_ = checkpoint.time;
+  const auto first = static_cast<std::size_t>(checkpoint.next_step - steps_forgotten_);
+  while (checkpoints_.back().time > *now_) checkpoints_.pop_back();
+  for (Stream& stream : streams_) {
+    if (stream.before.time > *now_) stream.before.time = Time::max();
   }
-  const std::size_t first = static_cast<std::size_t>(from.next_step - steps_forgotten_);
+  for (std::size_t k = 0; k < events_.size(); ++k) {
+    if (events_[k].time > *now_) events_[k].done = false;
+  }
   for (std::size_t k = first; k < steps_.size(); ++k) {
-    run(steps_[k]);
-    if (is_checkpoint_due() && !checkpoints_.full()) {
-      checkpoints_.push_back({fusion_, *now_, steps_forgotten_ + k + 1});
-    }
+    run(k);
+    if (is_checkpoint_due() && !checkpoints_.full()) keep(checkpoints_.extend(), k + 1);
   }
 }
 

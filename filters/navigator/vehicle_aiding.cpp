@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "leeway/model/heading.hpp"
 #include "leeway/model/vehicle_measurements.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {
@@ -16,11 +18,7 @@ constexpr double kOpenHeadingRightM = 1.0;
 
 VehicleConfig VehicleConfig::car() {
   VehicleConfig config;
-  config.zero_velocity = true;
-  config.zero_angular_rate = true;
-  config.non_holonomic = true;
-  config.odometer = true;
-  config.barometer = true;
+  for (const VehiclePart& part : kVehicleParts) config.*part.is_on = true;
   return config;
 }
 
@@ -75,7 +73,7 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
   if (config_.zero_velocity) {
     bank.update([this](Ekf& filter) {
       return filter.update(zero_velocity(filter.estimate(), config_.rest_sigma_mps),
-                           filter.rest_hides_heading() ? Held::kHeadingAndTurn : Held::kNothing);
+                           rest_hides_heading(filter) ? Held::kHeadingAndTurn : Held::kNothing);
     });
   }
   if (config_.zero_angular_rate) {
@@ -83,13 +81,13 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
     const double sigma = std::hypot(noise, config_.rest_turn_sigma_radps);
     bank.update([&](Ekf& filter) {
       return filter.update(zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma),
-                           filter.rest_hides_heading() ? Held::kHeading : Held::kNothing);
+                           rest_hides_heading(filter) ? Held::kHeading : Held::kNothing);
     });
   }
 }
 
 void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
-  if (!config_.non_holonomic || !bank.best().estimates_vehicle()) return;
+  if (!config_.non_holonomic || !bank.best().vehicle()) return;
   const double speed_mps = bank.best().estimate().nav.v_e_mps.norm();
   if (speed_mps < config_.min_speed_mps) return;
   const double turn_radps =
@@ -99,8 +97,8 @@ void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
     right_mps = std::hypot(right_mps, kOpenHeadingRightMps + kOpenHeadingRightM * turn_radps);
   }
   bank.update([&](Ekf& filter) {
-    return filter.update(non_holonomic(filter.estimate(), filter.vehicle().value,
-                                       filter.omega_ib_b_radps(), right_mps,
+    return filter.update(non_holonomic(filter.estimate(), filter.vehicle()->value,
+                                       filter.inertial().omega_ib_b_radps(), right_mps,
                                        config_.down_sigma_m2ps2 / speed_mps));
   });
 }

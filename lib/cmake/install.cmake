@@ -8,7 +8,8 @@ if(TARGET leeway_program)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/leeway TYPE INCLUDE
   FILES_MATCHING PATTERN "*.hpp"
-  PATTERN sim EXCLUDE)
+  PATTERN sim EXCLUDE
+  PATTERN studies.hpp EXCLUDE)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/leeway)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/leewayConfig.cmake.in

@@ -7,8 +7,11 @@
 #include <optional>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "sim/analysis/scene_covariance.hpp"
 
 namespace leeway::sim {

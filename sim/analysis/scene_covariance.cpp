@@ -1,5 +1,9 @@
 #include "sim/analysis/scene_covariance.hpp"
 
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
+
 namespace leeway::sim {
 namespace {
 

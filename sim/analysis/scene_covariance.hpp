@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "leeway/model/process_noise.hpp"
 #include "sim/analysis/truth_model.hpp"
 
 namespace leeway::sim {

@@ -8,6 +8,7 @@
 
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "leeway/model/process_noise.hpp"
+
 namespace leeway::sim {
 namespace {
 

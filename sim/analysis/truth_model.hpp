@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "sim/analysis/source_covariance.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/waypoints.hpp"

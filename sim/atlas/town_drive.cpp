@@ -1,5 +1,6 @@
 #include "sim/atlas/town_drive.hpp"
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 

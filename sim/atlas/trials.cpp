@@ -7,6 +7,11 @@
 #include <optional>
 #include <utility>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/ekf/ekf_config.hpp"
+#include "leeway/model/heading.hpp"
+#include "leeway/model/initial_covariance.hpp"
+
 namespace leeway::sim {
 namespace {
 

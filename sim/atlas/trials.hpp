@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/atlas/watched_filter.hpp"
 #include "sim/trials/recorded_trial.hpp"

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/atlas/watched_kernel_ekf.hpp"
+#include "leeway/ekf/ekf_config.hpp"
+#include "leeway/ekf/update_outcome.hpp"
+#include "leeway/model/heading.hpp"
+#include "sim/atlas/watched_ekf.hpp"
 #include "sim/compare/variant_filter.hpp"
 
 namespace leeway::sim {
@@ -21,31 +24,6 @@ class WatchedResetFilter final : public WatchedFilter {
 
  private:
   ResetFilter filter_;
-};
-
-class WatchedEkf final : public WatchedFilter {
- public:
-  WatchedEkf(const Ekf& filter, const FixTrust& trust)
-      : filter_(filter), trust_(trust), detectors_(filter.config().imu) {}
-
-  void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
-
-  void update(const GnssFix& fix) override {
-    const UpdateOutcome report = filter_.update(fix, trust_);
-    if (report.outcome == UpdateOutcome::Outcome::kUnusable) return detectors_.note_unusable();
-    if (report.outcome == UpdateOutcome::Outcome::kGated) detectors_.note_gated();
-    detectors_.note_nis(report.nis, report.dof);
-    detectors_.note(fix, filter_.estimate(), filter_.covariance());
-  }
-
-  Estimate estimate() const override { return filter_.estimate(); }
-  std::optional<ErrorMatrix> covariance() const override { return filter_.covariance(); }
-  Reports reported() const override { return detectors_.reports(); }
-
- private:
-  Ekf filter_;
-  FixTrust trust_;
-  CommonDetectors detectors_;
 };
 
 class WatchedNavigator final : public WatchedFilter {
@@ -94,6 +72,15 @@ class WatchedNavigator final : public WatchedFilter {
   Navigator navigator_;
   Reports reports_{};
 };
+
+std::unique_ptr<WatchedFilter> made_watched(const ResetFilter& filter) {
+  return std::make_unique<WatchedResetFilter>(filter);
+}
+
+template <class Kernel, class Error>
+std::unique_ptr<WatchedFilter> made_watched(const BasicEkf<Kernel, Error>& filter) {
+  return std::make_unique<WatchedEkf<Kernel, Error>>(filter);
+}
 
 AtlasGroup group_of(const Variant& variant) {
   if (variant.estimator == Estimator::kReset) return AtlasGroup::kReset;
@@ -147,7 +134,7 @@ std::string joined(const Reports& reports) {
 }
 
 std::unique_ptr<WatchedFilter> watched(const Ekf& filter, const FixTrust& trust) {
-  return std::make_unique<WatchedEkf>(filter, trust);
+  return std::make_unique<WatchedEkf<SymmetricKernel<double>, AdditiveError>>(filter, trust);
 }
 
 std::unique_ptr<WatchedFilter> watched(const Navigator& navigator) {
@@ -160,15 +147,7 @@ AtlasColumn column_of(const Variant& variant) {
   return {group_of(variant), both.substr(both.find(' ') + 1),
           [variant](const EkfConfig& config, const TrialStart& start) {
             return visit_variant_filter(variant, config, start,
-                                        [&config](auto filter) -> std::unique_ptr<WatchedFilter> {
-                                          using Filter = decltype(filter);
-                                          if constexpr (std::same_as<Filter, ResetFilter>) {
-                                            return std::make_unique<WatchedResetFilter>(filter);
-                                          } else {
-                                            return std::make_unique<WatchedKernelEkf<Filter>>(
-                                                std::move(filter), config.imu);
-                                          }
-                                        });
+                                        [](const auto& filter) { return made_watched(filter); });
           }};
 }
 

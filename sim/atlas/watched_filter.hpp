@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "leeway/ekf/ekf.hpp"
+#include "leeway/model/heading.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/compare/variant.hpp"
@@ -51,7 +52,7 @@ struct AtlasColumn {
   std::function<std::unique_ptr<WatchedFilter>(const EkfConfig&, const TrialStart&)> make{};
 };
 
-/// Navigator, Ekf and ResetFilter; KernelEkf over every kernel, precision and update form; the
+/// Navigator, Ekf and ResetFilter; BasicEkf over every kernel, precision and update form; the
 /// invariant EKF over the symmetric kernel in both precisions and over UD. P every 0.1 s.
 std::vector<AtlasColumn> atlas_columns();
 
@@ -59,7 +60,7 @@ std::vector<AtlasColumn> atlas_columns();
 /// not matter.
 std::vector<AtlasColumn> few_atlas_columns();
 
-/// A KernelEkf or a ResetFilter.
+/// A BasicEkf or a ResetFilter.
 AtlasColumn column_of(const Variant& variant);
 
 std::unique_ptr<WatchedFilter> watched(const Ekf& filter, const FixTrust& trust = {});

@@ -6,6 +6,8 @@
 #include <ctime>
 #include <utility>
 
+#include "leeway/ekf/ekf_config.hpp"
+
 namespace leeway::sim {
 
 namespace {

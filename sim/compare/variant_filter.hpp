@@ -7,10 +7,10 @@
 
 #include "leeway/alternatives/dense_kernel.hpp"
 #include "leeway/alternatives/invariant_ekf.hpp"
-#include "leeway/alternatives/kernel_ekf.hpp"
 #include "leeway/alternatives/reset_filter.hpp"
 #include "leeway/alternatives/ud_kernel.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
+#include "leeway/ekf/ekf.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "sim/trials/trial_score.hpp"
 
@@ -20,7 +20,7 @@ namespace leeway::sim {
 template <class Kernel, class Error, class Visitor>
 auto visit_kernel_ekf(const EkfConfig& config, UpdateForm form, const TrialStart& start,
                       Visitor& visitor) {
-  using Filter = KernelEkf<Kernel, Error>;
+  using Filter = BasicEkf<Kernel, Error>;
   if constexpr (std::constructible_from<Kernel, const ErrorMatrix&, UpdateForm>) {
     return visitor(Filter(config, start.estimate, Kernel(start.P, form)));
   } else {
@@ -52,6 +52,7 @@ auto visit_variant_filter(const Variant& variant, const EkfConfig& believed,
   EkfConfig config = believed;
   config.strapdown = variant.strapdown;
   config.covariance_interval_s = variant.covariance_interval_s;
+  config.gate_probability = 0.0;  // what a variant is lost by is to be seen
   if (variant.estimator == Estimator::kReset) return visitor(ResetFilter(config, start.estimate));
   switch (variant.kernel) {
     case KernelForm::kDense:

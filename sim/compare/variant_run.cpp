@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "leeway/ekf/ekf_config.hpp"
 #include "sim/compare/variant_filter.hpp"
 
 namespace leeway::sim {

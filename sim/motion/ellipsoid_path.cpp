@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "sim/motion/smooth_step.hpp"

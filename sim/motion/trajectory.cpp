@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 

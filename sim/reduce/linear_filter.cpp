@@ -5,7 +5,10 @@
 
 #include "leeway/covariance/covariance_track.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "sim/analysis/scene_covariance.hpp"
 #include "sim/trials/trial_score.hpp"
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "leeway/model/process_noise.hpp"
 #include "sim/analysis/truth_model.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 

@@ -2,6 +2,9 @@
 #include <cmath>
 #include <limits>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "sim/analysis/truth_model.hpp"
 #include "sim/reduce/linear_filter.hpp"
 #include "sim/reduce/reduction_parts.hpp"

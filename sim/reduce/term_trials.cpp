@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 #include "sim/trials/campaign_sums.hpp"

@@ -52,13 +52,11 @@ class Reference {
 };
 
 /// The readings of a sensor whose log may be missing, in the order of time.
-template <class Reading>
 class Readings {
  public:
-  Readings(const std::filesystem::path& path, const ScalarColumns& columns, double sigma)
-      : sigma_(sigma) {
+  Readings(const Aiding& aiding, const std::filesystem::path& path) : aiding_(aiding) {
     if (path.empty()) return;
-    reader_.emplace(path, columns);
+    reader_.emplace(path, columns_of(aiding));
     next_ = reader_->next();
   }
 
@@ -66,14 +64,15 @@ class Readings {
   template <class F>
   void take_until(Time t, F&& f) {
     for (; next_ && next_->time <= t; next_ = reader_->next()) {
-      f(Reading{next_->time, next_->value, std::isfinite(next_->sigma) ? next_->sigma : sigma_});
+      f(aiding_.reading(next_->time, next_->value,
+                        std::isfinite(next_->sigma) ? next_->sigma : aiding_.default_sigma));
     }
   }
 
   LogSummary report() const { return reader_ ? reader_->report() : LogSummary{}; }
 
  private:
-  double sigma_;
+  const Aiding& aiding_;
   std::optional<ScalarLogReader> reader_{};
   std::optional<ScalarRecord> next_{};
 };
@@ -104,10 +103,7 @@ class Branch {
   void withhold(const GnssFix& fix) { withheld_ = fix; }
 
   /// Aiding goes on through an outage. @pre begin() has been called.
-  template <class Reading>
-  void push(const Reading& reading) {
-    navigator_->push(reading);
-  }
+  void push(const Reading& reading) { navigator_->push(reading); }
 
   /// @pre begin() has been called.
   void push(const ImuIncrement& inc, Reference* reference) {
@@ -132,7 +128,7 @@ class Branch {
                ecef_from_geodetic(truth->nav.position));
     } else {
       if (!withheld_->position) return;
-      const Eigen::Vector3d& lever = navigator_->filter().config().lever_arm_b_m;
+      const Eigen::Vector3d& lever = navigator_->filter().inertial().config().lever_arm_b_m;
       m = miss(moved_to(t, estimate.nav, antenna_position_e(estimate, lever)),
                withheld_->position->r_e_m);
     }
@@ -216,8 +212,6 @@ class Replay {
       : observer_(observer),
         imu_(input.imu, input.imu_options),
         gnss_(input.gnss, input.gnss_options),
-        odometer_(input.odometer, odometer_columns(), OdometerSpeed{}.sigma_mps),
-        barometer_(input.barometer, barometer_columns(), BarometricHeight{}.sigma_m),
         navigator_(config),
         output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)) {
     if (!input.truth.empty()) reference_.emplace(input);
@@ -225,6 +219,9 @@ class Replay {
     if (input.start) navigator_.start(input.start->estimate, input.start->P);
     for (const Outage& outage : input.outages) {
       branches_.emplace_back(branches_.size(), outage, observer_);
+    }
+    for (std::size_t a = 0; a < kAidings.size(); ++a) {
+      aidings_.emplace_back(kAidings[a], input.aidings[a]);
     }
     next_fix_ = gnss_.next();
   }
@@ -259,14 +256,13 @@ class Replay {
     }
     imu_started_ = true;
     begin_branches(t);
-    const auto push_to_all = [this](const auto& reading) {
+    const auto push_to_all = [this](const Reading& reading) {
       for (Branch& branch : branches_) {
         if (branch.is_running()) branch.push(reading);
       }
       navigator_.push(reading);
     };
-    odometer_.take_until(t, push_to_all);
-    barometer_.take_until(t, push_to_all);
+    for (Readings& readings : aidings_) readings.take_until(t, push_to_all);
   }
 
   void begin_branches(Time t) {
@@ -352,8 +348,9 @@ class Replay {
     }
     result_.imu_report = imu_.report();
     result_.gnss_report = gnss_.report();
-    result_.odometer_report = odometer_.report();
-    result_.barometer_report = barometer_.report();
+    for (std::size_t a = 0; a < kAidings.size(); ++a) {
+      result_.aiding_reports[a] = aidings_[a].report();
+    }
     if (reference_) result_.truth_report = reference_->report();
     return result_;
   }
@@ -361,8 +358,7 @@ class Replay {
   const ReplayObserver& observer_;
   ImuLogReader imu_;
   GnssLogReader gnss_;
-  Readings<OdometerSpeed> odometer_;
-  Readings<BarometricHeight> barometer_;
+  std::vector<Readings> aidings_{};
   Navigator navigator_;
   Duration output_interval_;
   std::optional<Reference> reference_{};
@@ -381,8 +377,9 @@ class Replay {
 
 }  // namespace
 
-ScalarColumns odometer_columns() { return {"speed_mps", "sigma_mps", 500.0}; }
-ScalarColumns barometer_columns() { return {"height_m", "sigma_m", 1e5}; }
+ScalarColumns columns_of(const Aiding& aiding) {
+  return {aiding.value_column, aiding.sigma_column, aiding.largest};
+}
 
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const ReplayObserver& observer) {

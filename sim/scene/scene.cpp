@@ -5,7 +5,9 @@
 #include <sstream>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 
 namespace leeway::sim {
 namespace {

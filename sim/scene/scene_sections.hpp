@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/tools/toml_reader.hpp"
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"

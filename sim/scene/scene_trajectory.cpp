@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/motion/recorded_trajectory.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

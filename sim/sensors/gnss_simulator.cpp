@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 

@@ -4,6 +4,9 @@
 #include <string>
 #include <type_traits>
 
+#include "leeway/ekf/ekf_config.hpp"
+#include "leeway/model/initial_covariance.hpp"
+
 namespace leeway::sim {
 namespace {
 

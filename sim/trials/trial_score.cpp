@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/horizontal.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/tools/random.hpp"
 
 namespace leeway::sim {

@@ -4,6 +4,7 @@
 
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/covariance/covariance_kernel.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "tests/bench/motion.hpp"
 #include "tests/filters/covariance/kernel_cases.hpp"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sensors/imu.hpp"
@@ -34,11 +35,13 @@ class Lap {
     return inc;
   }
 
-  /// Position and velocity at the end of that increment.
-  GnssFix fix(std::int64_t k) const {
-    const NavState truth = sim::truth_at(circle_, static_cast<double>(k % kSteps) / kRateHz).nav;
+  /// Position and velocity at the end of that increment, or a while before.
+  /// @param back  samples, whole ones and parts, at most k
+  GnssFix fix(std::int64_t k, double back = 0.0) const {
+    const double t_s = (static_cast<double>(k % kSteps) - back) / kRateHz;
+    const NavState truth = sim::truth_at(circle_, t_s < 0.0 ? t_s + kLapS : t_s).nav;
     GnssFix fix;
-    fix.time = time(k);
+    fix.time = time(k) - duration_from_seconds(back / kRateHz);
     fix.position = GnssPosition{truth.r_e_m, Eigen::Matrix3d::Identity()};
     fix.velocity = GnssVelocity{truth.v_e_mps, 0.01 * Eigen::Matrix3d::Identity()};
     return fix;

@@ -15,6 +15,7 @@
 #include "leeway/logs/gnss_log.hpp"
 #include "leeway/logs/imu_log.hpp"
 #include "leeway/logs/solution_writer.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "leeway/model/claimed_solution.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "tests/bench/lap.hpp"
 
@@ -58,15 +59,15 @@ void push_imu(benchmark::State& state, const VehicleConfig& vehicle) {
   pushes.report(state);
 }
 
-/// @param late  samples that have come since the time of the fix
-void push_fix(benchmark::State& state, const VehicleConfig& vehicle, int late) {
+/// @param late  samples that have come since the time of the fix, whole ones and parts
+void push_fix(benchmark::State& state, const VehicleConfig& vehicle, double late) {
   const test::Lap lap;
   Navigator navigator = lap.navigator(with(vehicle));
   Pushes pushes;
   std::int64_t k = 0;
   for (auto _ : state) {
     for (int i = 0; i < test::Lap::kRateHz; ++i) navigator.push(lap.increment(++k));
-    const GnssFix fix = lap.fix(k - late);
+    const GnssFix fix = lap.fix(k, late);
     pushes.time(state, [&] { navigator.push(fix); });
   }
   if (navigator.count(Verdict::kFused) == 0) state.SkipWithError("no fix was fused");
@@ -80,7 +81,8 @@ void solution(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(navigator.solution());
 }
 
-constexpr int k500Ms = test::Lap::kRateHz / 2;
+constexpr double kHalf = 0.5;
+constexpr double k500Ms = 0.5 * test::Lap::kRateHz;
 
 BENCHMARK_CAPTURE(push_imu, plain, VehicleConfig{})->UseManualTime();
 BENCHMARK_CAPTURE(push_imu, car, VehicleConfig::car())->UseManualTime();
@@ -90,7 +92,13 @@ BENCHMARK_CAPTURE(push_fix, plain_on_time, VehicleConfig{}, 0)
 BENCHMARK_CAPTURE(push_fix, car_on_time, VehicleConfig::car(), 0)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(push_fix, plain_between_samples, VehicleConfig{}, kHalf)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(push_fix, plain_500_ms_late, VehicleConfig{}, k500Ms)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(push_fix, car_between_samples, VehicleConfig::car(), kHalf)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(push_fix, car_500_ms_late, VehicleConfig::car(), k500Ms)

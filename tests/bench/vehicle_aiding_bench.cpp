@@ -1,8 +1,9 @@
 // What each vehicle aiding costs when it acts, beside one step of the filter.
 #include <benchmark/benchmark.h>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/vehicle_measurements.hpp"
-#include "leeway/navigator/vehicle_aiding.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 
@@ -14,7 +15,7 @@ Ekf car() {
   Estimate start;
   start.nav = sim::truth_at(sim::circle(), 0.0).nav;
   Ekf filter({}, start, initial_covariance(start, {0.01, 0.05, 0.1, 3.0}, automotive_mems_model()));
-  filter.estimate_vehicle(vehicle_state(VehicleConfig::car()));
+  edit(filter, [](Belief& belief) { belief.vehicle = vehicle_state(VehicleConfig::car()); });
   return filter;
 }
 
@@ -60,15 +61,16 @@ BENCHMARK_CAPTURE(run, zero_angular_rate, [](const Ekf& filter) {
   return zero_angular_rate(filter.estimate(), Eigen::Vector3d(0.0, 0.0, 0.2), 1.0);
 })->Name("zero angular rate");
 BENCHMARK_CAPTURE(run, non_holonomic, [](const Ekf& filter) {
-  return non_holonomic(filter.estimate(), filter.vehicle().value, filter.omega_ib_b_radps(), 0.1,
-                       0.1);
+  return non_holonomic(filter.estimate(), filter.vehicle()->value,
+                       filter.inertial().omega_ib_b_radps(), 0.1, 0.1);
 })->Name("non-holonomic");
 BENCHMARK_CAPTURE(run, odometer, [](const Ekf& filter) {
-  return odometer_speed(20.0, 0.1, filter.estimate(), filter.vehicle().value,
-                        filter.omega_ib_b_radps());
+  return measurement(OdometerSpeed{{}, 20.0, 0.1}, filter.estimate(), filter.vehicle()->value,
+                     filter.inertial().omega_ib_b_radps());
 })->Name("odometer");
 BENCHMARK_CAPTURE(run, barometer, [](const Ekf& filter) {
-  return barometric_height(0.0, 1.0, filter.estimate(), filter.vehicle().value);
+  return measurement(BarometricHeight{{}, 0.0, 1.0}, filter.estimate(), filter.vehicle()->value,
+                     filter.inertial().omega_ib_b_radps());
 })->Name("barometer");
 
 }  // namespace

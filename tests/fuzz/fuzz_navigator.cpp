@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 
 namespace {

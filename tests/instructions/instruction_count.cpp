@@ -89,6 +89,16 @@ void count_navigator() {
   count("navigator_push_imu", kSecond, [&] { navigator.push(lap.increment(++k)); });
   const GnssFix fix = lap.fix(k);
   count("navigator_push_fix", 1, [&] { navigator.push(fix); });
+  // From the third on it is known when they come.
+  for (int second = 0; second < 3; ++second) {
+    for (int i = 0; i < kSecond; ++i) navigator.push(lap.increment(++k));
+    const GnssFix between = lap.fix(k, 0.5);
+    if (second < 2) {
+      navigator.push(between);
+    } else {
+      count("navigator_push_fix_between", 1, [&] { navigator.push(between); });
+    }
+  }
 }
 
 void count_logs() {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "leeway/earth/earth.hpp"
+
 namespace leeway::test {
 namespace {
 

@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::test {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "leeway/covariance/covariance_kernel.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 

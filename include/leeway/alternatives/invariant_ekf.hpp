@@ -3,8 +3,8 @@
 /// element of the group SE_2(3), left-invariant.
 #pragma once
 
-#include "leeway/alternatives/kernel_ekf.hpp"
 #include "leeway/covariance/transition.hpp"
+#include "leeway/ekf/ekf.hpp"
 #include "leeway/model/error_state.hpp"
 
 namespace leeway {
@@ -26,9 +26,9 @@ struct InvariantError {
   static Transition reset(const ErrorVector& xi_hat);
 };
 
-/// KernelEkf on the invariant error. covariance() is that of the invariant error, and to first
+/// BasicEkf on the invariant error. covariance() is that of the invariant error, and to first
 /// order of the error of error_state.hpp.
 template <CovarianceKernel Kernel>
-using InvariantEkf = KernelEkf<Kernel, InvariantError>;
+using InvariantEkf = BasicEkf<Kernel, InvariantError>;
 
 }  // namespace leeway

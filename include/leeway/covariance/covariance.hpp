@@ -4,53 +4,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 
 #include "leeway/covariance/transition.hpp"
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/model/vehicle_state.hpp"
-#include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway {
-
-/// White noise that drives the error state, as power spectral densities; isotropic per triad.
-struct ProcessNoise {
-  double attitude_rad2_per_s{};  ///< gyro white noise, squared density
-  double velocity_m2_per_s3{};   ///< accelerometer white noise, squared density
-  double b_a_m2_per_s5{};        ///< drive of the accelerometer bias
-  double b_g_rad2_per_s3{};      ///< drive of the gyro bias
-  double tau_a_s{std::numeric_limits<double>::infinity()};
-  double tau_g_s{std::numeric_limits<double>::infinity()};
-};
-
-/// Variance that the noise adds to each error over a time.
-inline ErrorVector noise_variance(const ProcessNoise& noise, double dt_s) {
-  ErrorVector variance = ErrorVector::Zero();
-  variance.segment<3>(kPsi).setConstant(dt_s * noise.attitude_rad2_per_s);
-  variance.segment<3>(kDv).setConstant(dt_s * noise.velocity_m2_per_s3);
-  variance.segment<3>(kBa).setConstant(dt_s * noise.b_a_m2_per_s5);
-  variance.segment<3>(kBg).setConstant(dt_s * noise.b_g_rad2_per_s3);
-  return variance;
-}
-
-/// How much of a triad's bias model the filter carries.
-enum class BiasState {
-  kModelled,    ///< as process_noise() has it (default)
-  kRandomWalk,  ///< the same drive without the decay: a state that needs no exponential
-  kConstant,    ///< as uncertain at the start, and constant
-  kNone,        ///< no bias: its state stays zero, and certain
-};
-
-struct BiasStates {
-  BiasState accelerometer{BiasState::kModelled};
-  BiasState gyro{BiasState::kModelled};
-};
-
-/// What the model means to the filter. An in-run bias without a turn-on part is a Gauss-Markov
-/// state. With one it is a random walk of the same drive: a decaying state would pull the constant
-/// part, which does not decay, towards zero.
-/// @throws Error when the model is invalid.
-ProcessNoise process_noise(const ImuErrorModel& model, const BiasStates& biases = {});
 
 /// P <- Phi (P + Q/2) Phi^T + Q/2 with Q = density * Phi.dt_s: the trapezoidal rule for the noise,
 /// exact to second order in dt, which needs no Q matrix.
@@ -61,8 +21,14 @@ void propagate(ErrorMatrix& P, const Transition& Phi, const ProcessNoise& noise)
 /// propagate() where P follows every increment.
 void propagate(ErrorMatrix& P, const ErrorDynamics& step, const ProcessNoise& noise);
 
+/// What the parameters of the vehicle and their covariance with the errors become over Phi.
+void propagate(VehicleState& vehicle, const Transition& Phi);
+
 /// What becomes of P when the three errors from `row` on become T times what they are.
 void transform_block(ErrorMatrix& P, int row, const Eigen::Matrix3d& T);
+
+/// Whether every direction of the error has a variance: the Cholesky factor exists.
+bool is_positive_definite(const ErrorMatrix& P);
 
 /// A scalar measurement of unit variance: z = h x + noise.
 /// P <- (I - K h) P (I - K h)^T + K K^T, evaluated as two products (Joseph's form, not its

@@ -10,6 +10,7 @@
 #include "leeway/covariance/transition.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/measurement.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 
@@ -54,6 +55,15 @@ concept CovarianceKernel = std::constructible_from<K, const ErrorMatrix&> &&
   kernel.propagate(Phi, noise);
   { kernel.update(x_hat, h, z) } -> std::same_as<double>;
   { kernel.update(x_hat, H, values) } -> std::same_as<double>;
+};
+
+/// A kernel that stores P such that another can be put in its place. Only over such a kernel can a
+/// filter be corrected by hand, hold directions, or estimate the vehicle's parameters.
+template <class K>
+concept SettableKernel = CovarianceKernel<K> &&
+    requires(K kernel, const ErrorMatrix& P, const Eigen::Matrix3d& J) {
+  kernel.set(P);
+  kernel.turn_attitude(J);  // what becomes of P when the attitude error becomes J times what it is
 };
 
 /// The update of a whole measurement by scalars in sequence. @returns the NIS

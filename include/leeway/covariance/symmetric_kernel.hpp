@@ -11,6 +11,7 @@
 #include "leeway/covariance/covariance_kernel.hpp"
 #include "leeway/covariance/transition.hpp"
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/process_noise.hpp"
 
 namespace leeway {
 
@@ -40,6 +41,10 @@ class SymmetricKernel {
   explicit SymmetricKernel(const ErrorMatrix& P, UpdateForm form = UpdateForm::kJoseph)
       : form_(form) {
     P_.setZero();
+    set(P);
+  }
+
+  void set(const ErrorMatrix& P) {
     P_.template topLeftCorner<kErrorStates, kErrorStates>() = P.cast<Scalar>();
   }
 
@@ -52,6 +57,15 @@ class SymmetricKernel {
 
   double update(ErrorVector& x_hat, const ErrorVector& h, double z);
   double update(ErrorVector& x_hat, const MeasurementRows& H, const MeasurementValues& z);
+
+  /// What becomes of P when the attitude error becomes J times what it is.
+  void turn_attitude(const Eigen::Matrix3d& J);
+
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(P_);
+  }
 
  private:
   std::optional<Scalar> take_at_once(ErrorVector& x_hat, const MeasurementRows& H,

@@ -17,9 +17,9 @@ struct TimeToLimit {
 
 /// How long from now, without another fix, until the horizontal position error is beyond the limit
 /// with more than 1 - probability, while the vehicle keeps its speed and its rate of turn (the mean
-/// of Ekf::mean_omega_ib_b_radps). The first time this happens; where the error grows and shrinks,
-/// an excursion shorter than a quarter of a turn, or of a Schuler period, may pass unseen. Within
-/// 0.5 % of what this filter would say when it had coasted there.
+/// of InertialEstimate::mean_omega_ib_b_radps). The first time this happens; where the error grows
+/// and shrinks, an excursion shorter than a quarter of a turn, or of a Schuler period, may pass
+/// unseen. Within 0.5 % of what this filter would say when it had coasted there.
 ///
 /// 0 when the limit is exceeded already, and when the question has no answer: limit <= 0,
 /// probability not between 0 and 1, or either of them, or the filter, not a number. Allocates

@@ -1,5 +1,5 @@
 /// @file
-/// Logs of one quantity over time, such as an odometer's speed: a streaming reader.
+/// Logs of one quantity over time, such as a speed: a streaming reader.
 #pragma once
 
 #include <filesystem>

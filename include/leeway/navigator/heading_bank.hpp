@@ -40,7 +40,7 @@ class HeadingBank {
   HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
               const Eigen::Vector3d& axis_e, double sigma_rad);
 
-  /// Runs f on every member: predict, coast. f: void(Ekf&), the same for all.
+  /// Runs f on every member: predict, bridge. f: void(Ekf&), the same for all.
   template <class F>
   void for_each(F&& f) {
     for (std::optional<Ekf>& member : members_) {
@@ -48,19 +48,19 @@ class HeadingBank {
     }
   }
 
-  /// Runs f on every member, weights the members by the likelihood of what f reports, drops those
+  /// Runs f on every member, weights the members by the likelihood of the outcomes, drops those
   /// that it refutes and those that agree with a heavier one.
   /// @param f  UpdateOutcome(Ekf&): a fix, or a pseudo measurement. It fills nis, gate and
   /// log_det_S.
-  /// @returns the report of best().
+  /// @returns the outcome of best().
   template <class F>
   UpdateOutcome update(F&& f) {
-    Reports reports{};
+    Outcomes outcomes{};
     for (std::size_t k = 0; k < kMaxFilters; ++k) {
-      if (members_[k]) reports[k] = f(*members_[k]);
+      if (members_[k]) outcomes[k] = f(*members_[k]);
     }
-    if (!collapsed()) weigh(reports);
-    return reports[best_];
+    if (!collapsed()) weigh(outcomes);
+    return outcomes[best_];
   }
 
   bool collapsed() const { return count_ == 1; }
@@ -77,25 +77,19 @@ class HeadingBank {
   /// covariance and the square of its distance. Its attitude errors may reach pi.
   ErrorMatrix covariance() const;
 
-  /// Names every member that changes, for a snapshot. @param filter  any, of this configuration
+  /// Names every member that changes, for a snapshot.
   template <class Archive>
-  void visit(Archive& archive, const Ekf& filter) {
-    for (std::optional<Ekf>& member : members_) {
-      bool is_there = member.has_value();
-      archive(is_there);
-      Ekf content = member.value_or(filter);
-      archive(content);
-      if (is_there) member = content;
-      if (!is_there) member.reset();
-    }
+  void visit(Archive& archive) {
+    const Ekf any = best();
+    for (std::optional<Ekf>& member : members_) archive.optional(member, any);
     archive(log_weight_, count_, best_, last_evidence_);
   }
 
  private:
-  using Reports = std::array<UpdateOutcome, kMaxFilters>;
+  using Outcomes = std::array<UpdateOutcome, kMaxFilters>;
 
-  void weigh(const Reports& reports);
-  double evidence_weight(const UpdateOutcome& report);
+  void weigh(const Outcomes& outcomes);
+  double evidence_weight(const UpdateOutcome& outcome);
   void normalize();
   void merge();
   void drop(std::size_t k);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "leeway/ekf/time_to_limit.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/health.hpp"
 #include "leeway/navigator/imu_clock.hpp"
 #include "leeway/navigator/navigator_config.hpp"
@@ -17,7 +18,6 @@
 #include "leeway/navigator/verdict.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sensors/imu.hpp"
-#include "leeway/sensors/vehicle_sensors.hpp"
 #include "leeway/strapdown/solution.hpp"
 
 namespace leeway {
@@ -40,17 +40,16 @@ class Navigator {
   Verdict push(const ImuIncrement& inc);
   Verdict push(const ImuSample& sample);
 
-  Verdict push(const GnssFix& fix);
-  Verdict push(const OdometerSpeed& odometer);
-  Verdict push(const BarometricHeight& barometer);
+  /// A GnssFix, or what another sensor reads (aidings.hpp).
+  Verdict push(const Reading& reading);
 
-  bool aligned() const { return fusion().aligned(); }
+  bool aligned() const { return state().aligned(); }
 
   /// At the newest IMU time, with one sigma. @pre aligned().
   Solution solution() const;
 
   /// The filter, the likeliest one while several headings are possible. @pre aligned().
-  const Ekf& filter() const { return fusion().bank().best(); }
+  const Ekf& filter() const { return state().bank().best(); }
 
   /// How long from the newest IMU time, without another fix, the horizontal error stays within the
   /// limit with the given probability (time_to_limit); 0 before alignment.
@@ -59,12 +58,12 @@ class Navigator {
   }
 
   /// Sensor axes to body axes; nothing while the mount is unknown.
-  const std::optional<Eigen::Matrix3d>& C_bs() const { return fusion().C_bs(); }
+  const std::optional<Eigen::Matrix3d>& C_bs() const { return state().C_bs(); }
 
-  Health health() const;
+  Health health() const { return state().health(timeline_.now().value_or(Time{})); }
 
   /// The newest fix that reached the filter; dof 0 before the first.
-  const UpdateOutcome& last_update() const { return fusion().last_update(); }
+  const UpdateOutcome& last_update() const { return state().last_update(); }
 
   std::uint64_t count(Verdict verdict) const;
 
@@ -82,22 +81,18 @@ class Navigator {
  private:
   template <class Archive>
   void visit(Archive& archive) {
-    archive(history_, clock_, sample_, counts_);
+    archive(timeline_, clock_, sample_, counts_);
   }
 
-  const NavigatorState& fusion() const { return history_.fusion(); }
+  const NavigatorState& state() const { return timeline_.state(); }
   Verdict counted(Verdict verdict);
-  Verdict take(const ImuIncrement& inc, Time as_told);
-  Verdict judge(const ImuIncrement& inc) const;
-  template <class Reading>
-  Verdict judge_and_take(const Reading& reading);
+  Verdict take(const ImuIncrement& inc);
+  Verdict take(const ImuSample& sample);
   Verdict take(const GnssFix& fix);
-  Verdict take(const OdometerSpeed& odometer);
-  Verdict take(const BarometricHeight& barometer);
-  Verdict place(const Event& event);
+  Verdict take(const Event& event);
 
   NavigatorConfig config_;
-  Timeline history_;
+  Timeline timeline_;
   ImuClock clock_;
   std::optional<ImuSample> sample_{};
   std::array<std::uint64_t, kVerdicts> counts_{};

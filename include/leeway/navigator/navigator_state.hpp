@@ -6,15 +6,16 @@
 #include <cstdint>
 #include <optional>
 
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/alignment.hpp"
 #include "leeway/navigator/gate_recovery.hpp"
 #include "leeway/navigator/heading_bank.hpp"
+#include "leeway/navigator/health.hpp"
 #include "leeway/navigator/mount_estimator.hpp"
 #include "leeway/navigator/navigator_config.hpp"
 #include "leeway/navigator/receiver_noise.hpp"
 #include "leeway/navigator/vehicle_aiding.hpp"
 #include "leeway/navigator/verdict.hpp"
-#include "leeway/sensors/vehicle_sensors.hpp"
 
 namespace leeway {
 
@@ -36,9 +37,7 @@ class NavigatorState {
   void bridge(Time to);
 
   /// At the time that integrate() and bridge() have reached. @pre is_usable.
-  Verdict fuse(const GnssFix& fix);
-  Verdict fuse(const OdometerSpeed& odometer);
-  Verdict fuse(const BarometricHeight& barometer);
+  Verdict fuse(const Reading& reading);
 
   bool aligned() const { return bank_.has_value(); }
 
@@ -48,46 +47,34 @@ class NavigatorState {
   /// Sensor axes to body axes, as far as known.
   const std::optional<Eigen::Matrix3d>& C_bs() const { return C_bs_; }
 
+  /// The newest fix that reached the filter; dof 0 before the first.
   const UpdateOutcome& last_update() const { return last_update_; }
-  const std::optional<Time>& last_fused() const { return last_fused_; }
-  const std::optional<Time>& gated_since() const { return gate_recovery_.since(); }
-  const ReceiverNoise& position_noise() const { return position_noise_; }
-  const ReceiverNoise& velocity_noise() const { return velocity_noise_; }
-  bool at_rest() const { return aiding_.at_rest(); }
-  bool distrusts_imu() const { return gate_recovery_.distrusts_imu(); }
-  std::uint32_t repairs() const { return repairs_; }
-  std::uint32_t resets() const { return resets_; }
-  std::uint32_t realignments() const { return realignments_; }
+
+  /// @param now  that integrate() and bridge() have reached
+  Health health(Time now) const;
 
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
     archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
             last_fused_, gate_recovery_, repairs_, resets_, realignments_);
-    const Ekf filter = any_filter();
-    bool has_bank = bank_.has_value();
-    archive(has_bank);
-    HeadingBank bank = bank_ ? *bank_ : HeadingBank(filter);
-    bank.visit(archive, filter);
-    bank_ = has_bank ? std::optional(bank) : std::nullopt;
+    archive.optional(bank_, any_bank());
   }
 
  private:
+  HeadingBank any_bank() const;
+  Verdict take(const GnssFix& fix);
+  template <AidingReading R>
+  Verdict take(const R& reading);
   void align(const GnssFix& fix);
   void begin(const HeadingBank& bank);
   void begin_vehicle();
   void find_mount();
   void open_heading();
   Verdict settle(const GnssFix& fix);
-  void note_fused(Time t);
-  void follow_drift();
-  template <class F>
-  Verdict aid(bool is_on, F&& measurement);
-  Verdict locked_out(const GnssFix& fix);
+  void learn_noise(const GnssFix& fix);
+  Verdict recover(const GnssFix& fix);
   void realign();
-  void guard_numbers();
-  void watch_covariance();
-  Ekf any_filter() const;
 
   NavigatorConfig config_;
   Aligner aligner_;

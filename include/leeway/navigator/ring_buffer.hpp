@@ -24,11 +24,14 @@ class RingBuffer {
   T& operator[](std::size_t k) { return data_[(first_ + k) % data_.size()]; }
   const T& operator[](std::size_t k) const { return data_[(first_ + k) % data_.size()]; }
   const T& front() const { return (*this)[0]; }
+  T& front() { return (*this)[0]; }
   T& back() { return (*this)[size_ - 1]; }
   const T& back() const { return (*this)[size_ - 1]; }
 
-  /// @pre not full().
-  void push_back(const T& value) { data_[(first_ + size_++) % data_.size()] = value; }
+  /// One element more at the end, which holds whatever was there before. @pre not full().
+  T& extend() { return data_[(first_ + size_++) % data_.size()]; }
+
+  void push_back(const T& value) { extend() = value; }
 
   /// Before the element k. @pre not full(), k <= size().
   void insert(std::size_t k, const T& value) {

@@ -16,7 +16,7 @@ enum class Verdict : std::uint8_t {
   kFused,        ///< the measurement corrected the state
   kGated,        ///< it was too far from the prediction for both to be right
   kReset,        ///< the gate had locked out fixes that agree: position and velocity begin anew
-  kGap,          ///< IMU data was missing for longer than max_gap_s: bridged by coasting
+  kGap,          ///< IMU data was missing for longer than max_gap_s: it was bridged
   kLate,         ///< older than what is kept to go back to
   kDuplicate,    ///< same time and kind as one before
   kOutOfOrder,   ///< IMU data older than the newest; measurements may come in any order

@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 #include <limits>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/estimator_scenes.hpp"

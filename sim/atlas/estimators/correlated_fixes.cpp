@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"

@@ -1,9 +1,12 @@
 #include <memory>
 
+#include "filters/ekf/basic_ekf.hpp"
+#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
-#include "sim/atlas/watched_kernel_ekf.hpp"
+#include "sim/atlas/watched_ekf.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -50,9 +53,11 @@ class EditedGainKernel {
 template <UpdateForm form>
 AtlasColumn edited_column(const std::string& name) {
   return {AtlasGroup::kNotOffered, name, [](const EkfConfig& config, const TrialStart& start) {
-            using Filter = KernelEkf<EditedGainKernel<form>>;
-            return std::make_unique<WatchedKernelEkf<Filter>>(
-                Filter(config, start.estimate, EditedGainKernel<form>(start.P)), config.imu);
+            EkfConfig ungated = config;
+            ungated.gate_probability = 0.0;
+            using Kernel = EditedGainKernel<form>;
+            return std::make_unique<WatchedEkf<Kernel, AdditiveError>>(
+                BasicEkf(ungated, start.estimate, Kernel(start.P)));
           }};
 }
 

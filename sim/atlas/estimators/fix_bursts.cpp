@@ -1,6 +1,7 @@
 #include <cmath>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"

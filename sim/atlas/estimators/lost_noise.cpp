@@ -1,6 +1,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "leeway/model/heading.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/estimator_scenes.hpp"

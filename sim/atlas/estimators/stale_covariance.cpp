@@ -2,6 +2,7 @@
 #include <numbers>
 #include <string>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "leeway/ekf/ekf_config.hpp"
 #include "sim/atlas/mechanization_scenes.hpp"
 #include "sim/atlas/town_drive.hpp"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/ekf/ekf_config.hpp"
 #include "sim/atlas/mechanization_scenes.hpp"
 #include "sim/atlas/town_drive.hpp"
 

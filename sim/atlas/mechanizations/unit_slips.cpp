@@ -1,3 +1,4 @@
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "sim/atlas/mechanization_scenes.hpp"
 #include "sim/atlas/town_drive.hpp"

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "sim/cli/answer.hpp"

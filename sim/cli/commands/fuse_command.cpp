@@ -1,6 +1,9 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <string>
 
+#include "leeway/ekf/ekf_config.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/logs/gnss_log.hpp"
 #include "sim/cli/answer.hpp"
@@ -80,31 +83,34 @@ int run(const FuseOptions& options) {
 }
 
 void add_log_options(CLI::App& app, FuseLogs& logs) {
-  const auto file = [&app](const char* name, std::filesystem::path& path, const char* description) {
-    return app.add_option(name, path, description)->type_name("FILE");
-  };
   CLI::Option* drive =
       app.add_option("--drive", logs.drives,
                      "a folder with imu.csv.gz, gnss.csv.gz, reference_position.csv.gz, meta.json "
                      "(mount_rpy_deg, reference_window_s) and outages.json; may be repeated")
           ->type_name("DIR");
-  for (CLI::Option* option :
-       {file("--imu", logs.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip"),
-        file("--gnss", logs.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip"),
-        file("--odometer", logs.odometer, "speed log, CSV: t_s, speed_mps and maybe sigma_mps"),
-        file("--barometer", logs.barometer, "height log, CSV: t_s, height_m and maybe sigma_m"),
-        file("--truth", logs.truth,
-             "truth or reference log to measure errors against; without it the errors of outages "
-             "are measured against the withheld fixes"),
-        file("--outages", logs.outages,
-             "JSON [{\"start_s\": .., \"duration_s\": ..}, ..]: each is withheld alone"),
-        add_numbers<2>(app, "--truth-window", "FROM,TO", logs.truth_window_s,
-                       "use the truth between these times only, s"),
-        add_numbers<3>(app, "--mount", "ROLL,PITCH,YAW", logs.mount_rpy_deg,
-                       "sensor axes to vehicle axes Rz(Y) Ry(P) Rx(R), deg; without it the sensor "
-                       "axes are forward, right, down")}) {
-    option->excludes(drive);
+  const auto file = [&app, drive](const std::string& name, std::filesystem::path& path,
+                                  const std::string& description) {
+    app.add_option("--" + name, path, description)->type_name("FILE")->excludes(drive);
+  };
+  file("imu", logs.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip");
+  file("gnss", logs.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip");
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    file(kAidings[a].name, logs.aidings[a],
+         fmt::format("{}, CSV: t_s, {} and maybe {}", kAidings[a].log, kAidings[a].value_column,
+                     kAidings[a].sigma_column));
   }
+  file("truth", logs.truth,
+       "truth or reference log to measure errors against; without it the errors of outages are "
+       "measured against the withheld fixes");
+  file("outages", logs.outages,
+       "JSON [{\"start_s\": .., \"duration_s\": ..}, ..]: each is withheld alone");
+  add_numbers<2>(app, "--truth-window", "FROM,TO", logs.truth_window_s,
+                 "use the truth between these times only, s")
+      ->excludes(drive);
+  add_numbers<3>(app, "--mount", "ROLL,PITCH,YAW", logs.mount_rpy_deg,
+                 "sensor axes to vehicle axes Rz(Y) Ry(P) Rx(R), deg; without it the sensor axes "
+                 "are forward, right, down")
+      ->excludes(drive);
   app.add_option("--mount-axes", logs.mount_axes,
                  "the vehicle axes of --mount: forward-left-up or forward-right-down")
       ->check(CLI::IsMember({"flu", "frd"}))
@@ -147,8 +153,10 @@ void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
                  "--mount the mount is estimated")
       ->check(CLI::IsMember({"none", "car"}))
       ->capture_default_str();
+  std::vector<std::string> part_names;
+  for (const VehiclePart& part : kVehicleParts) part_names.emplace_back(part.name);
   app.add_option("--without", vehicle.without, "switch a part of --vehicle off; may be repeated")
-      ->check(CLI::IsMember(vehicle_part_names()));
+      ->check(CLI::IsMember(part_names));
   app.add_flag("--estimate-mount", vehicle.estimate_mount,
                "estimate the mount even if meta.json of a --drive gives one")
       ->excludes(app.get_option("--mount"));

@@ -64,11 +64,9 @@ void inspect(FuseJob& job) {
   if (can_be_read_twice(in.gnss)) {
     job.gnss_format = format_name(GnssLogReader(in.gnss, in.gnss_options).format());
   }
-  if (!in.odometer.empty() && can_be_read_twice(in.odometer)) {
-    ScalarLogReader{in.odometer, sim::odometer_columns()};
-  }
-  if (!in.barometer.empty() && can_be_read_twice(in.barometer)) {
-    ScalarLogReader{in.barometer, sim::barometer_columns()};
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    if (in.aidings[a].empty() || !can_be_read_twice(in.aidings[a])) continue;
+    ScalarLogReader{in.aidings[a], sim::columns_of(kAidings[a])};
   }
   if (!in.truth.empty() && can_be_read_twice(in.truth)) TruthLogReader{in.truth};
 }
@@ -104,8 +102,7 @@ FuseJob job_of_logs(const FuseOptions& options) {
   job.mount_rpy_deg = logs.mount_rpy_deg;
   job.input.imu = logs.imu;
   job.input.gnss = logs.gnss;
-  job.input.odometer = logs.odometer;
-  job.input.barometer = logs.barometer;
+  job.input.aidings = logs.aidings;
   job.input.solution = options.output.solution;
   set_truth(job.input, logs.truth, logs.truth_window_s);
   if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);
@@ -151,19 +148,11 @@ const std::vector<std::string>& scheme_names() {
   return names;
 }
 
-const std::vector<std::string>& vehicle_part_names() {
-  static const std::vector<std::string> names{"zero-velocity", "zero-angular-rate", "non-holonomic",
-                                              "odometer", "barometer"};
-  return names;
-}
-
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
   if (vehicle.name == "none") return {};
   VehicleConfig config = VehicleConfig::car();
-  bool* const parts[] = {&config.zero_velocity, &config.zero_angular_rate, &config.non_holonomic,
-                         &config.odometer, &config.barometer};
-  for (const std::string& part : vehicle.without) {
-    *parts[index_of(vehicle_part_names(), part)] = false;
+  for (const VehiclePart& part : kVehicleParts) {
+    config.*part.is_on = std::count(vehicle.without.begin(), vehicle.without.end(), part.name) == 0;
   }
   return config;
 }
@@ -184,9 +173,13 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
 std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
   const bool asks_for_a_vehicle =
-      !options.vehicle.without.empty() || !logs.odometer.empty() || !logs.barometer.empty();
+      !options.vehicle.without.empty() || logs.aidings != sim::AidingLogs{};
   if (options.vehicle.name == "none" && asks_for_a_vehicle) {
-    throw Error("--without, --odometer and --barometer are used with --vehicle car");
+    std::string names = "--without";
+    for (const Aiding& a : kAidings) {
+      names += (&a == &kAidings.back() ? " and --" : ", --") + std::string(a.name);
+    }
+    throw Error(names + " are used with --vehicle car");
   }
   if (logs.drives.empty() && (logs.imu.empty() || logs.gnss.empty())) {
     throw Error("fuse needs --imu and --gnss, or --drive");

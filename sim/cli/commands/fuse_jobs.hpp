@@ -20,8 +20,7 @@ struct FuseLogs {
   std::vector<std::filesystem::path> drives{};
   std::filesystem::path imu{};
   std::filesystem::path gnss{};
-  std::filesystem::path odometer{};
-  std::filesystem::path barometer{};
+  sim::AidingLogs aidings{};
   std::filesystem::path truth{};
   std::filesystem::path outages{};
   std::optional<Eigen::Vector2d> truth_window_s{};
@@ -71,9 +70,6 @@ struct FuseJob {
 /// The names of RateMeaning and of Scheme, in their order.
 const std::vector<std::string>& rate_meaning_names();
 const std::vector<std::string>& scheme_names();
-
-/// The parts of the vehicle aiding that can be switched off.
-const std::vector<std::string>& vehicle_part_names();
 
 /// @throws Error when the IMU model cannot be read or a number is out of range.
 NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu);

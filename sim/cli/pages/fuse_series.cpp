@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/ekf/update_outcome.hpp"
 #include "leeway/model/chi_square.hpp"
 
 namespace leeway::cli {

@@ -30,11 +30,9 @@ Json report_json(const std::filesystem::path& path, const std::string& format,
 Json logs_json(const FuseJob& job) {
   Json logs{{"imu", report_json(job.input.imu, job.imu_format, job.result.imu_report)},
             {"gnss", report_json(job.input.gnss, job.gnss_format, job.result.gnss_report)}};
-  if (!job.input.odometer.empty()) {
-    logs["odometer"] = report_json(job.input.odometer, "CSV", job.result.odometer_report);
-  }
-  if (!job.input.barometer.empty()) {
-    logs["barometer"] = report_json(job.input.barometer, "CSV", job.result.barometer_report);
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    if (job.input.aidings[a].empty()) continue;
+    logs[kAidings[a].name] = report_json(job.input.aidings[a], "CSV", job.result.aiding_reports[a]);
   }
   if (!job.input.truth.empty()) {
     logs["truth"] = report_json(job.input.truth, "CSV", job.result.truth_report);
@@ -143,13 +141,13 @@ Json drives_json(const std::vector<FuseJob>& jobs) {
 Json input_json(const FuseOptions& o, const std::string& imu_name) {
   Json input;
   if (o.logs.drives.empty()) {
-    input = {{"imu", path_json(o.logs.imu)},
-             {"gnss", path_json(o.logs.gnss)},
-             {"odometer", path_json(o.logs.odometer)},
-             {"barometer", path_json(o.logs.barometer)},
-             {"truth", path_json(o.logs.truth)},
-             {"outages", path_json(o.logs.outages)},
-             {"mount_rpy_deg", json_of(o.logs.mount_rpy_deg)}};
+    input = {{"imu", path_json(o.logs.imu)}, {"gnss", path_json(o.logs.gnss)}};
+    for (std::size_t a = 0; a < kAidings.size(); ++a) {
+      input[kAidings[a].name] = path_json(o.logs.aidings[a]);
+    }
+    input.update({{"truth", path_json(o.logs.truth)},
+                  {"outages", path_json(o.logs.outages)},
+                  {"mount_rpy_deg", json_of(o.logs.mount_rpy_deg)}});
   } else {
     for (const auto& folder : o.logs.drives) input["drives"].push_back(folder.string());
   }

@@ -70,11 +70,9 @@ void print_inputs(const FuseJob& job) {
   };
   add("IMU", job.imu_format, job.result.imu_report, job.input.imu);
   add("GNSS", job.gnss_format, job.result.gnss_report, job.input.gnss);
-  if (!job.input.odometer.empty()) {
-    add("odometer", "CSV", job.result.odometer_report, job.input.odometer);
-  }
-  if (!job.input.barometer.empty()) {
-    add("barometer", "CSV", job.result.barometer_report, job.input.barometer);
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    if (job.input.aidings[a].empty()) continue;
+    add(kAidings[a].name, "CSV", job.result.aiding_reports[a], job.input.aidings[a]);
   }
   if (!job.input.truth.empty()) add("truth", "CSV", job.result.truth_report, job.input.truth);
   fmt::print("Input\n");
@@ -234,8 +232,9 @@ void warn(const FuseJob& job) {
   const std::string where = job.drive.empty() ? "" : job.drive + ": ";
   warn_of_log("IMU", job.input.imu, r.imu_report);
   warn_of_log("GNSS", job.input.gnss, r.gnss_report);
-  warn_of_log("odometer", job.input.odometer, r.odometer_report);
-  warn_of_log("barometer", job.input.barometer, r.barometer_report);
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    warn_of_log(kAidings[a].name, job.input.aidings[a], r.aiding_reports[a]);
+  }
   if (!job.input.truth.empty()) warn_of_log("truth", job.input.truth, r.truth_report);
   if (const auto n = count(r, Verdict::kGap); n > 0) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);

@@ -10,6 +10,8 @@
 #include "leeway/alternatives/dense_kernel.hpp"
 #include "leeway/alternatives/ud_kernel.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "tests/filters/covariance/kernel_cases.hpp"
 
 namespace leeway {

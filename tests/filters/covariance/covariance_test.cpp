@@ -10,6 +10,8 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"

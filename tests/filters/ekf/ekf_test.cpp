@@ -9,9 +9,12 @@
 #include <limits>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/chi_square.hpp"
+#include "leeway/model/claimed_solution.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "tests/filters/model/random_state.hpp"
 #include "tests/filters/navigator/recording.hpp"
@@ -147,9 +150,9 @@ TEST_CASE("with the vehicle's parameters: the dense Kalman update of all twenty,
     for (double& v : vehicle.value) v = random.normal();
     vehicle.P = P.bottomRightCorner<kVehicleStates, kVehicleStates>();
     vehicle.cross = P.topRightCorner<kErrorStates, kVehicleStates>();
-    CHECK_FALSE(ekf.estimates_vehicle());
-    ekf.estimate_vehicle(vehicle);
-    CHECK(ekf.estimates_vehicle());
+    CHECK_FALSE(ekf.vehicle().has_value());
+    edit(ekf, [&](Belief& belief) { belief.vehicle = vehicle; });
+    CHECK(ekf.vehicle().has_value());
 
     Measurement m(1 + static_cast<int>(seed % 6));
     for (double& h : m.H.reshaped()) h = random.normal();
@@ -180,14 +183,14 @@ TEST_CASE("with the vehicle's parameters: the dense Kalman update of all twenty,
     CHECK(near(report.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
     CHECK(near(report.log_det_S, std::log(static_cast<double>(S.determinant())), 1e-9));
     JointMatrix P_joint;
-    P_joint << ekf.covariance(), ekf.vehicle().cross, ekf.vehicle().cross.transpose(),
-        ekf.vehicle().P;
+    P_joint << ekf.covariance(), ekf.vehicle()->cross, ekf.vehicle()->cross.transpose(),
+        ekf.vehicle()->P;
     CHECK(test::scaled_distance(P_joint, P_after) < 1e-9);
     const ErrorVector off =
         difference(ekf.estimate(), after).cwiseQuotient(sigmas.head<kErrorStates>());
     CHECK(off.cwiseAbs().maxCoeff() < 1e-8);  // ECEF rounds to 1e-9 m, the position sigma is 5 m
     const VehicleVector vehicle_off =
-        (ekf.vehicle().value - vehicle.value - x_hat.tail<kVehicleStates>())
+        (ekf.vehicle()->value - vehicle.value - x_hat.tail<kVehicleStates>())
             .cwiseQuotient(sigmas.tail<kVehicleStates>());
     CHECK(vehicle_off.cwiseAbs().maxCoeff() < 1e-9);
   }
@@ -201,7 +204,7 @@ TEST_CASE("the vehicle's parameters through time: the cross covariance follows P
   vehicle.P.diagonal() << 1.0, 2.0, 3.0, 4.0, 5.0;
   vehicle.random_walk_per_s << 0.1, 0.2, 0.3, 0.4, 0.5;
   vehicle.cross = 0.01 * VehicleCross::Random();
-  with.estimate_vehicle(vehicle);
+  edit(with, [&](Belief& belief) { belief.vehicle = vehicle; });
   Ekf without(EkfConfig{}, start, diagonal_covariance(0.03, 0.3, 5.0, 0.1, 0.01));
   for (const ImuIncrement& inc : sim::true_increments(trajectory, 100.0, 2.0)) {
     with.predict(inc);
@@ -210,11 +213,11 @@ TEST_CASE("the vehicle's parameters through time: the cross covariance follows P
   // Parameters that nothing has been measured of leave the 15 states alone.
   CHECK(same_bits(with, without));
   // 0.1 s at a time: after 2 s the walk of 20 of them.
-  CHECK(near(with.vehicle().P.diagonal(), vehicle.P.diagonal() + 2.0 * vehicle.random_walk_per_s,
+  CHECK(near(with.vehicle()->P.diagonal(), vehicle.P.diagonal() + 2.0 * vehicle.random_walk_per_s,
              1e-12));
   // A velocity error that goes with a parameter has become a position error: 2 s, to the turn of
   // the Earth (1e-4 rad/s) and what the attitude adds: 10 m/s^2 for 2 s, twice integrated.
-  const VehicleCross& cross = with.vehicle().cross;
+  const VehicleCross& cross = with.vehicle()->cross;
   const Eigen::Matrix<double, 3, kVehicleStates> moved = cross.middleRows<3>(kDr) -
                                                          vehicle.cross.middleRows<3>(kDr) -
                                                          2.0 * vehicle.cross.middleRows<3>(kDv);
@@ -230,12 +233,12 @@ TEST_CASE("widen multiplies every covariance and moves nothing") {
   VehicleState vehicle;
   vehicle.P.setIdentity();
   vehicle.cross.setConstant(0.001);
-  ekf.estimate_vehicle(vehicle);
+  edit(ekf, [&](Belief& belief) { belief.vehicle = vehicle; });
   const Ekf before = ekf;
-  ekf.widen(4.0);
+  edit(ekf, [](Belief& belief) { widen(belief, 4.0); });
   CHECK(near(ekf.covariance(), 4.0 * before.covariance(), 1e-15));
-  CHECK(near(ekf.vehicle().P, 4.0 * vehicle.P, 1e-15));
-  CHECK(near(ekf.vehicle().cross, 4.0 * vehicle.cross, 1e-15));
+  CHECK(near(ekf.vehicle()->P, 4.0 * vehicle.P, 1e-15));
+  CHECK(near(ekf.vehicle()->cross, 4.0 * vehicle.cross, 1e-15));
   CHECK(ekf.estimate().nav.r_e_m == before.estimate().nav.r_e_m);
   CHECK(ekf.estimate().nav.v_e_mps == before.estimate().nav.v_e_mps);
 }
@@ -268,8 +271,10 @@ TEST_CASE("turn_body_axes renames: same motion in n, the same filter from there 
     CHECK(near(renamed.estimate().bias.b_a_mps2, C_new_old * old.estimate().bias.b_a_mps2, 1e-15));
     CHECK(
         near(renamed.estimate().bias.b_g_radps, C_new_old * old.estimate().bias.b_g_radps, 1e-15));
-    CHECK(near(renamed.omega_ib_b_radps(), C_new_old * old.omega_ib_b_radps(), 1e-14));
-    CHECK(near(renamed.mean_omega_ib_b_radps(), C_new_old * old.mean_omega_ib_b_radps(), 1e-14));
+    CHECK(near(renamed.inertial().omega_ib_b_radps(), C_new_old * old.inertial().omega_ib_b_radps(),
+               1e-14));
+    CHECK(near(renamed.inertial().mean_omega_ib_b_radps(),
+               C_new_old * old.inertial().mean_omega_ib_b_radps(), 1e-14));
     CHECK(near(renamed.estimate().nav.q_eb.toRotationMatrix() * C_new_old,
                old.estimate().nav.q_eb.toRotationMatrix(), 1e-14));
     const Solution after = solution(renamed.estimate(), renamed.covariance());
@@ -310,13 +315,13 @@ TEST_CASE("restart_motion: position and velocity anew, attitude and biases as th
   VehicleState vehicle;
   vehicle.P.setIdentity();
   vehicle.cross.setConstant(0.001);
-  ekf.estimate_vehicle(vehicle);
+  edit(ekf, [&](Belief& belief) { belief.vehicle = vehicle; });
   const Ekf before = ekf;
   const Eigen::Vector3d r_e_m = at_equator().nav.r_e_m + Eigen::Vector3d(10.0, 300.0, -500.0);
   const Eigen::Vector3d v_e_mps(1.0, 20.0, 3.0);
   const Eigen::Matrix3d P_rr = random_covariance3(random, 2.0);
   const Eigen::Matrix3d P_vv = random_covariance3(random, 0.1);
-  ekf.restart_motion(r_e_m, P_rr, v_e_mps, P_vv);
+  edit(ekf, [&](Belief& belief) { restart_motion(belief, r_e_m, P_rr, v_e_mps, P_vv); });
   CHECK(ekf.estimate().nav.r_e_m == r_e_m);
   CHECK(ekf.estimate().nav.v_e_mps == v_e_mps);
   CHECK(ekf.estimate().nav.q_eb.coeffs() == before.estimate().nav.q_eb.coeffs());
@@ -331,10 +336,10 @@ TEST_CASE("restart_motion: position and velocity anew, attitude and biases as th
     for (const int other : {kPsi, kBa, kBg}) {
       CHECK(P.block<3, 3>(kept, other) == P_before.block<3, 3>(kept, other));
     }
-    CHECK(ekf.vehicle().cross.middleRows<3>(kept) == vehicle.cross.middleRows<3>(kept));
+    CHECK(ekf.vehicle()->cross.middleRows<3>(kept) == vehicle.cross.middleRows<3>(kept));
   }
-  CHECK(ekf.vehicle().cross.middleRows<6>(kDv).isZero(0.0));
-  CHECK(ekf.vehicle().P == vehicle.P);
+  CHECK(ekf.vehicle()->cross.middleRows<6>(kDv).isZero(0.0));
+  CHECK(ekf.vehicle()->P == vehicle.P);
 }
 
 TEST_CASE("repair_covariance makes an indefinite P positive definite, and says so") {
@@ -354,19 +359,19 @@ TEST_CASE("repair_covariance makes an indefinite P positive definite, and says s
     P = (0.5 * (P + P.transpose())).eval();
     REQUIRE(P.diagonal().minCoeff() > 0.0);
     Ekf ekf(EkfConfig{}, at_equator(), P);
-    CHECK_FALSE(ekf.repair_covariance());
+    CHECK_FALSE(repair_covariance(ekf));
     const ErrorMatrix repaired = ekf.covariance();
     CHECK(repaired == repaired.transpose());
     const Eigen::LLT<ErrorMatrix> llt(repaired);
     CHECK(llt.info() == Eigen::Success);
     // What was negative by a millionth of the correlations is now a billionth.
     CHECK(test::scaled_distance(repaired, P) < 1e-5);
-    CHECK(ekf.repair_covariance());
+    CHECK(repair_covariance(ekf));
     CHECK(ekf.covariance() == repaired);
   }
   Ekf healthy(EkfConfig{}, at_equator(), diagonal_covariance(0.01, 0.1, 2.0, 0.1, 0.01));
   const Ekf before = healthy;
-  CHECK(healthy.repair_covariance());
+  CHECK(repair_covariance(healthy));
   CHECK(same_bits(healthy, before));
 }
 
@@ -542,7 +547,7 @@ TEST_CASE("coasting in closed form") {
   Estimate start = at_equator();
   start.nav.v_e_mps = {0.0, 20.0, 0.0};
   Ekf ekf(plain_config(), start, diagonal_covariance(0.01, 0.1, 2.0, 0.1, 0.01));
-  ekf.coast(time_from_seconds(10.0));
+  bridge(ekf, time_from_seconds(10.0));
   const Estimate& end = ekf.estimate();
   CHECK(end.nav.time == time_from_seconds(10.0));
   CHECK(near(end.nav.r_e_m - start.nav.r_e_m, Eigen::Vector3d(0.0, 200.0, 0.0), 2e-9));
@@ -629,7 +634,7 @@ TEST_CASE("initial covariance: tilt and heading about the local axes") {
 
 TEST_CASE("mean rate: all there is at first, then exponentially weighted over 5 s") {
   Ekf ekf(plain_config(), at_equator(), ErrorMatrix::Identity());
-  CHECK(ekf.mean_omega_ib_b_radps().isZero(0.0));
+  CHECK(ekf.inertial().mean_omega_ib_b_radps().isZero(0.0));
   constexpr double kStepS = 0.01;
   Time time = ekf.estimate().nav.time;
   const auto feed = [&](double rate_radps, int count) {
@@ -639,13 +644,14 @@ TEST_CASE("mean rate: all there is at first, then exponentially weighted over 5 
     }
   };
   feed(0.2, 1);
-  CHECK(near(ekf.mean_omega_ib_b_radps().z(), 0.2, 1e-15));
+  CHECK(near(ekf.inertial().mean_omega_ib_b_radps().z(), 0.2, 1e-15));
   feed(0.4, 1);
-  CHECK(near(ekf.mean_omega_ib_b_radps().z(), 0.3, 1e-15));
+  CHECK(near(ekf.inertial().mean_omega_ib_b_radps().z(), 0.3, 1e-15));
   feed(0.3, 1000);
   feed(0.0, 500);
   // (1 - dt / 5 s)^(5 s / dt): 1/e but for the step.
-  CHECK(near(ekf.mean_omega_ib_b_radps().z(), 0.3 * std::pow(1.0 - kStepS / 5.0, 500.0), 1e-12));
+  CHECK(near(ekf.inertial().mean_omega_ib_b_radps().z(), 0.3 * std::pow(1.0 - kStepS / 5.0, 500.0),
+             1e-12));
 }
 
 TEST_CASE("an invalid configuration or start is refused: the field, its value, its range") {

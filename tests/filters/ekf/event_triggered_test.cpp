@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "tests/filters/navigator/recording.hpp"

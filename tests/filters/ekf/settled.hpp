@@ -11,6 +11,7 @@
 
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/horizontal.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "tests/filters/navigator/recording.hpp"
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

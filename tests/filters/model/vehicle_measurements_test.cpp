@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "tests/filters/model/random_state.hpp"
 #include "tests/support/near.hpp"
@@ -78,11 +80,15 @@ Measurement constraint(const Setup& s) {
 
 double odometer_reads(const Setup& truth) {
   return (1.0 + truth.vehicle(kOdometerScale)) *
-         rear_axle_velocity(truth.estimate, truth.vehicle, truth.omega_b_radps).x();
+         RearAxle(truth.estimate, truth.vehicle, truth.omega_b_radps).v_mps.x();
 }
 
 Measurement odometer(const Setup& s, double speed_mps) {
-  return odometer_speed(speed_mps, 0.1, s.estimate, s.vehicle, s.omega_b_radps);
+  return measurement(OdometerSpeed{{}, speed_mps, 0.1}, s.estimate, s.vehicle, s.omega_b_radps);
+}
+
+Measurement barometer(const Setup& s, double height_m) {
+  return measurement(BarometricHeight{{}, height_m, 0.1}, s.estimate, s.vehicle, s.omega_b_radps);
 }
 
 /// A gyro with the truth's bias that turns with the Earth.
@@ -117,11 +123,9 @@ const Model kModels[] = {
      [](const Setup& s) { return zero_angular_rate(s.estimate, gyro_reads_at_rest(s), 0.1); }},
     {"barometer",
      [](const Setup& truth, const Setup& s) {
-       return filled(barometric_height(barometer_reads(truth), 0.1, s.estimate, s.vehicle));
+       return filled(barometer(s, barometer_reads(truth)));
      },
-     [](const Setup& s) {
-       return barometric_height(barometer_reads(s), 0.1, s.estimate, s.vehicle);
-     }},
+     [](const Setup& s) { return barometer(s, barometer_reads(s)); }},
 };
 
 }  // namespace
@@ -135,7 +139,7 @@ TEST_CASE("H of every vehicle measurement is the derivative of its innovation") 
       CAPTURE(seed);
       CAPTURE(model.name);
       const Measurement m = model.linearized(s);
-      const double speed_mps = rear_axle_velocity(s.estimate, s.vehicle, s.omega_b_radps).norm();
+      const double speed_mps = RearAxle(s.estimate, s.vehicle, s.omega_b_radps).v_mps.norm();
       CHECK(m.R.diagonal().minCoeff() > 0.0);
       const auto numeric = test::central_jacobian(
           [&](const ErrorVector& x) -> Eigen::Vector3d {
@@ -185,19 +189,21 @@ TEST_CASE("signs: a car drives forward, slips right, climbs; its wheels read too
   // Turns right at 0.1 rad/s: the axle, 2 m behind, swings out to the left by 0.2 m/s.
   const Eigen::Vector3d turning_b = still_b + Eigen::Vector3d(0.0, 0.0, 0.1);
   // Of 10 m/s in ECEF 1e-14 are lost, of 6.4e6 m 1e-9.
-  CHECK(near(rear_axle_velocity(car, vehicle, still_b), Eigen::Vector3d(10.0, 0.4, -0.3), 1e-13));
-  CHECK(near(rear_axle_velocity(car, vehicle, turning_b), Eigen::Vector3d(10.0, 0.2, -0.3), 1e-13));
-  CHECK(near(odometer_speed(10.0, 0.1, car, vehicle, still_b).innovation(0), -0.5, 1e-13));
+  CHECK(near(RearAxle(car, vehicle, still_b).v_mps, Eigen::Vector3d(10.0, 0.4, -0.3), 1e-13));
+  CHECK(near(RearAxle(car, vehicle, turning_b).v_mps, Eigen::Vector3d(10.0, 0.2, -0.3), 1e-13));
+  CHECK(near(measurement(OdometerSpeed{{}, 10.0, 0.1}, car, vehicle, still_b).innovation(0), -0.5,
+             1e-13));
   const Measurement constrained = non_holonomic(car, vehicle, turning_b, 0.1, 0.2);
   CHECK(near(constrained.innovation, Eigen::Vector2d(-0.2, 0.3), 1e-13));
   CHECK(near(constrained.R.diagonal(), Eigen::Vector2d(0.01, 0.04), 1e-15));
-  CHECK(near(barometric_height(107.5, 0.1, car, vehicle).innovation(0), 0.5, 3e-9));
+  CHECK(near(measurement(BarometricHeight{{}, 107.5, 0.1}, car, vehicle, still_b).innovation(0),
+             0.5, 3e-9));
   // A body that looks 0.04 rad right of the way it goes carries a mount yaw of -0.04 rad.
   vehicle(kMountYaw) = -0.04;
   car.nav.q_eb = Eigen::Quaterniond(C_en * exp_rotation({0.0, 0.0, 0.04}));
   car.nav.v_e_mps = C_en * Eigen::Vector3d(10.0, 0.0, 0.0);
   // The rate is still that of the body before it was turned: 7e-5 rad/s, 2 m, 0.04 rad.
-  CHECK(near(rear_axle_velocity(car, vehicle, still_b).tail<2>(), Eigen::Vector2d::Zero(), 1e-5));
+  CHECK(near(RearAxle(car, vehicle, still_b).v_mps.tail<2>(), Eigen::Vector2d::Zero(), 1e-5));
 }
 
 TEST_CASE("the axle of a simulated car goes straight where the body turns about it") {
@@ -209,12 +215,12 @@ TEST_CASE("the axle of a simulated car goes straight where the body turns about 
   estimate.nav = truth.nav;
   const VehicleVector at_imu = VehicleVector::Zero();
   // The tangent plane's curvature: 5 m off the ground over 100 m is 2e-5 rad of pitch, level body.
-  CHECK(near(rear_axle_velocity(estimate, at_imu, truth.omega_ib_b_radps),
+  CHECK(near(RearAxle(estimate, at_imu, truth.omega_ib_b_radps).v_mps,
              Eigen::Vector3d(20.0, 0.0, 0.0), 1e-9));
   VehicleVector behind = at_imu;
   behind(kRearAxleX) = -1.5;
   // 0.2 rad/s times 1.5 m to the left.
-  CHECK(near(rear_axle_velocity(estimate, behind, truth.omega_ib_b_radps),
+  CHECK(near(RearAxle(estimate, behind, truth.omega_ib_b_radps).v_mps,
              Eigen::Vector3d(20.0, -0.3, 0.0), 1e-9));
 }
 

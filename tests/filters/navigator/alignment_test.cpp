@@ -9,6 +9,7 @@
 #include <string>
 
 #include "leeway/earth/error.hpp"
+#include "leeway/model/claimed_solution.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temp_dir.hpp"

@@ -7,9 +7,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
-#include "leeway/sensors/vehicle_sensors.hpp"
 #include "leeway/sim/motion/waypoints.hpp"
 #include "tests/filters/navigator/recording.hpp"
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "tests/filters/navigator/car.hpp"
 #include "tests/support/near.hpp"
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/filters/navigator/same_bits.hpp"
 #include "tests/support/near.hpp"

@@ -7,8 +7,11 @@
 
 #include "leeway/alternatives/invariant_ekf.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
+#include "leeway/earth/earth.hpp"
 #include "leeway/ekf/time_to_limit.hpp"
+#include "leeway/model/claimed_solution.hpp"
 #include "leeway/model/horizontal.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "tests/filters/navigator/recording.hpp"
@@ -45,7 +48,7 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
       GnssFix fix = log.fixes[0];
       fused += ekf.update(fix).outcome == UpdateOutcome::Outcome::kFused;
       for (std::size_t k = 50; k < 100; ++k) ekf.predict(log.imu[k]);
-      ekf.coast(time_from_seconds(1.5));
+      bridge(ekf, time_from_seconds(1.5));
       fix = log.fixes[1];
       fix.velocity.reset();
       fused += ekf.update(fix).outcome == UpdateOutcome::Outcome::kFused;

@@ -8,6 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/support/numbers.hpp"

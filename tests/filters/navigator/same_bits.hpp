@@ -10,6 +10,12 @@
 
 namespace leeway::test {
 
+/// Of what a filter knows of the vehicle.
+inline bool same_bits(const std::optional<VehicleState>& a, const std::optional<VehicleState>& b) {
+  if (!a || !b) return !a && !b;
+  return a->value == b->value && a->P == b->P;
+}
+
 /// Of what a navigator says of itself. Both may still be aligning.
 inline bool same_bits(const Navigator& a, const Navigator& b) {
   if (a.aligned() != b.aligned()) return false;
@@ -20,8 +26,7 @@ inline bool same_bits(const Navigator& a, const Navigator& b) {
          x.nav.v_e_mps == y.nav.v_e_mps && x.nav.r_e_m == y.nav.r_e_m &&
          x.bias.b_a_mps2 == y.bias.b_a_mps2 && x.bias.b_g_radps == y.bias.b_g_radps &&
          a.filter().covariance() == b.filter().covariance() &&
-         a.filter().vehicle().value == b.filter().vehicle().value &&
-         a.filter().vehicle().P == b.filter().vehicle().P && a.C_bs() == b.C_bs();
+         same_bits(a.filter().vehicle(), b.filter().vehicle()) && a.C_bs() == b.C_bs();
 }
 
 /// Everything, what waits and what is kept to go back to included.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "tests/filters/navigator/car.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/support/near.hpp"

@@ -1,4 +1,4 @@
-// The history shows through the navigator: when a measurement is heard of does not matter.
+// The timeline shows through the navigator: when a measurement is heard of does not matter.
 #include "leeway/navigator/timeline.hpp"
 
 #include <doctest/doctest.h>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/filters/navigator/same_bits.hpp"
@@ -25,7 +26,7 @@ constexpr double kRateHz = 100.0;
 /// A message and the time at which it arrives.
 struct Arrival {
   double at_s{};
-  GnssFix fix{};
+  Reading reading{};
 };
 
 std::vector<Arrival> on_time(const std::vector<GnssFix>& fixes) {
@@ -41,7 +42,7 @@ void run(Navigator& navigator, const std::vector<ImuIncrement>& imu,
   std::size_t next = 0;
   for (const ImuIncrement& inc : imu) {
     for (; next < arrivals.size() && arrivals[next].at_s < to_seconds(inc.time); ++next) {
-      navigator.push(arrivals[next].fix);
+      navigator.push(arrivals[next].reading);
     }
     navigator.push(inc);
     after_imu(navigator);
@@ -125,6 +126,52 @@ TEST_CASE("late, shuffled and repeated fixes lead to the same bits as fixes on t
           CHECK(late.count(v) == clean.count(v));
         }
       }
+    }
+  }
+}
+
+TEST_CASE("what comes at a steady pace, and steadily late, leads to the same bits as in order") {
+  const auto imu = imu_until(20.0);
+  for (const bool on_samples : {true, false}) {
+    for (const double velocity_lag_s : {0.0, 0.1}) {  // cuts every fix in two
+      std::vector<Arrival> in_order;
+      for (GnssFix fix : fixes_until(18.0)) {
+        const double t_s = std::round(to_seconds(fix.time) * kRateHz) / kRateHz;
+        if (on_samples) fix.time = time_from_seconds(t_s);
+        const Time between = fix.time + std::chrono::milliseconds{100};
+        in_order.push_back({to_seconds(fix.time), fix});
+        in_order.push_back({to_seconds(fix.time), OdometerSpeed{fix.time, 30.0, 0.1}});
+        in_order.push_back({to_seconds(fix.time), BarometricHeight{fix.time, 100.0, 0.5}});
+        in_order.push_back({to_seconds(between), OdometerSpeed{between, 30.0, 0.1}});
+      }
+      const auto driven = [&](std::vector<Arrival> arrivals, double late_s) {
+        for (Arrival& a : arrivals) a.at_s += late_s;
+        std::stable_sort(arrivals.begin(), arrivals.end(),
+                         [](const Arrival& a, const Arrival& b) { return a.at_s < b.at_s; });
+        NavigatorConfig config;
+        config.vehicle = VehicleConfig::car();
+        config.timing.velocity_lag_s = velocity_lag_s;
+        Navigator navigator(config);
+        start(navigator, fast_circle());
+        run(navigator, imu, arrivals);
+        return navigator;
+      };
+      const Navigator clean = driven(in_order, -1.0);
+      const std::vector<Arrival> reversed(in_order.rbegin(), in_order.rend());
+      // 0: right after the sample of their time. Up to a sample, a fix's interval, several.
+      for (const double late_s : {0.0, 0.013, 0.13, 0.31, 1.2}) {
+        for (const auto& arrivals : {in_order, reversed}) {
+          CAPTURE(on_samples);
+          CAPTURE(velocity_lag_s);
+          CAPTURE(late_s);
+          const Navigator late = driven(arrivals, late_s);
+          CHECK(same_bits(late, clean));
+          CHECK(late.count(Verdict::kFused) == clean.count(Verdict::kFused));
+          CHECK(late.count(Verdict::kGated) == clean.count(Verdict::kGated));
+          CHECK(late.count(Verdict::kLate) == 0);
+        }
+      }
+      CHECK(clean.count(Verdict::kFused) > 200);
     }
   }
 }

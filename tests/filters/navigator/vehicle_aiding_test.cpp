@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "tests/filters/navigator/car.hpp"
 #include "tests/support/near.hpp"
@@ -87,7 +88,7 @@ TEST_CASE("a mount 2 deg off is found within three sigma, over seeds 1 to 20" *
     options.C_sv = exp_rotation(mount_rad);
     Navigator navigator = test::started_car(car_config(), options.C_sv);
     run(navigator, test::drive(options, seed), 300.0);
-    const VehicleState& vehicle = navigator.filter().vehicle();
+    const VehicleState& vehicle = *navigator.filter().vehicle();
     for (const int k : {kMountPitch, kMountYaw}) {
       CAPTURE(k);
       const double sigma_rad = std::sqrt(vehicle.P(k, k));
@@ -105,7 +106,7 @@ TEST_CASE("wheels that read 2 % too much: the scale is found within three sigma"
     CAPTURE(seed);
     Navigator navigator = test::started_car(car_config());
     run(navigator, test::drive({.odometer_scale = 0.02}, seed), 200.0, {.odometer = true});
-    const VehicleState& vehicle = navigator.filter().vehicle();
+    const VehicleState& vehicle = *navigator.filter().vehicle();
     const double sigma = std::sqrt(vehicle.P(kOdometerScale, kOdometerScale));
     CHECK(near(vehicle.value(kOdometerScale), 0.02, 3.0 * sigma));
     CHECK(sigma < 0.005);
@@ -120,7 +121,7 @@ TEST_CASE("the barometer's offset is found within three sigma, and holds the hei
     Navigator navigator = test::started_car(car_config());
     run(navigator, test::drive({.height_offset_m = 35.0}, seed), 260.0,
         {.gnss_until_s = 200.0, .height = true});
-    const VehicleState& vehicle = navigator.filter().vehicle();
+    const VehicleState& vehicle = *navigator.filter().vehicle();
     const double sigma_m = std::sqrt(vehicle.P(kHeightOffset, kHeightOffset));
     CHECK(near(vehicle.value(kHeightOffset), 35.0, 3.0 * sigma_m));
     CHECK(sigma_m < 1.0);

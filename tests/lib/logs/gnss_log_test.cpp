@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/logs/line_reader.hpp"

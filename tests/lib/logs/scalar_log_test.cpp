@@ -6,7 +6,6 @@
 #include <string>
 
 #include "leeway/earth/error.hpp"
-#include "leeway/sensors/vehicle_sensors.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temp_dir.hpp"
 
@@ -59,18 +58,6 @@ TEST_CASE("a log of something else is refused, naming the column") {
   const std::string message = test::message_of<Error>([&] { ScalarLogReader(path, kSpeed); });
   CHECK(contains(message, path.string()));
   CHECK(contains(message, "missing columns speed_mps"));
-}
-
-TEST_CASE("readings that no vehicle gives are not usable") {
-  CHECK(is_usable(OdometerSpeed{{}, -3.0, 0.1}));
-  CHECK_FALSE(is_usable(OdometerSpeed{{}, 501.0, 0.1}));
-  CHECK_FALSE(is_usable(OdometerSpeed{{}, 3.0, 0.0}));
-  // 2026-11-28: the square of such a sigma is zero, and the filter divided by it.
-  CHECK_FALSE(is_usable(OdometerSpeed{{}, 3.0, 1e-308}));
-  CHECK_FALSE(is_usable(OdometerSpeed{{}, NAN, 0.1}));
-  CHECK(is_usable(BarometricHeight{{}, -20.0, 0.5}));
-  CHECK_FALSE(is_usable(BarometricHeight{{}, 2e5, 0.5}));
-  CHECK_FALSE(is_usable(BarometricHeight{{}, 0.0, -0.5}));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/numbers.hpp"

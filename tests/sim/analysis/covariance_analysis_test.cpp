@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"

@@ -54,7 +54,7 @@ TEST_CASE("reduce --json --write: the contract, and a filter that campaign takes
   CHECK(campaign.exit_code == 0);
   const double rms_m = campaign.json().at("results").at("rms_horizontal_m");
   const double in_reduce_m = results.at("reduced").at("rms_horizontal_m");
-  CHECK(std::abs(rms_m - in_reduce_m) < 1e-3);  // Ekf against KernelEkf: rounding
+  CHECK(std::abs(rms_m - in_reduce_m) < 1e-3);  // Ekf against BasicEkf: rounding
 }
 
 TEST_CASE("reduce prints every term with both figures and its cost, then the models") {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/compare/variant_run.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "leeway/earth/earth.hpp"
 #include "sim/compare/variant_run.hpp"
 
 namespace leeway::sim {

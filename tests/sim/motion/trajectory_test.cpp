@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

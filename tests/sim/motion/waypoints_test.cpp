@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"

@@ -8,6 +8,7 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "tests/support/near.hpp"

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/motion/waypoints.hpp"

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string>
 
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

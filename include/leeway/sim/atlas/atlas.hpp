@@ -17,7 +17,7 @@ enum class AtlasVerdict { kSurvives, kDegrades, kFails };
 enum class AtlasGroup {
   kNavigator,
   kEkf,
-  kDoubleKernel,  ///< KernelEkf in double precision
+  kDoubleKernel,  ///< BasicEkf in double precision
   kFloatKernel,   ///< and in single
   kInvariant,
   kReset,

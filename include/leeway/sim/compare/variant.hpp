@@ -12,7 +12,7 @@
 namespace leeway::sim {
 
 enum class Estimator {
-  kEkf,           ///< KernelEkf (default)
+  kEkf,           ///< BasicEkf (default)
   kInvariantEkf,  ///< InvariantEkf: the same on the error of SE_2(3)
   kReset,         ///< ResetFilter: the seed's separate scheme
 };

@@ -3,6 +3,7 @@
 /// time, and the errors that grow in them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -14,18 +15,21 @@
 #include "leeway/logs/imu_log.hpp"
 #include "leeway/logs/scalar_log.hpp"
 #include "leeway/logs/truth_log.hpp"
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/scene/outage.hpp"
 
 namespace leeway::sim {
 
+/// The logs of the sensors of kAidings, in their order. Empty: none.
+using AidingLogs = std::array<std::filesystem::path, kAidings.size()>;
+
 struct ReplayInput {
   std::filesystem::path imu{};
   std::filesystem::path gnss{};
-  std::filesystem::path odometer{};   ///< empty: none; t_s, speed_mps and maybe sigma_mps
-  std::filesystem::path barometer{};  ///< empty: none; t_s, height_m and maybe sigma_m
-  std::filesystem::path truth{};      ///< empty: errors against withheld fixes
-  std::filesystem::path solution{};   ///< empty: none is written
+  AidingLogs aidings{};
+  std::filesystem::path truth{};     ///< empty: errors against withheld fixes
+  std::filesystem::path solution{};  ///< empty: none is written
   ImuLogOptions imu_options{};
   GnssLogOptions gnss_options{};
   std::vector<Outage> outages{};
@@ -64,8 +68,7 @@ struct ReplayResult {
   LogSummary imu_report{};
   LogSummary gnss_report{};
   LogSummary truth_report{};
-  LogSummary odometer_report{};
-  LogSummary barometer_report{};
+  std::array<LogSummary, kAidings.size()> aiding_reports{};
 };
 
 /// A branch without fixes, at the time of a withheld fix or at its end.
@@ -86,9 +89,8 @@ struct ReplayObserver {
   std::function<void(const OutageEpoch&)> outage{};
 };
 
-/// What the logs of odometer and barometer hold.
-ScalarColumns odometer_columns();
-ScalarColumns barometer_columns();
+/// What the log of a sensor holds.
+ScalarColumns columns_of(const Aiding& aiding);
 
 /// Runs the log in one pass and constant memory. Every outage branches from the fully aided state,
 /// so outages may overlap.

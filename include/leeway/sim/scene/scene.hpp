@@ -10,6 +10,7 @@
 
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/horizontal.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
 #include "leeway/sim/scene/outage.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "leeway/model/error_state.hpp"
+#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
 

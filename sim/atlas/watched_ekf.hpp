@@ -1,11 +1,15 @@
 /// @file
-/// KernelEkf over any kernel, watched: also over kernels that only a scene has.
+/// BasicEkf over any kernel, watched: also over kernels that only a scene has.
 #pragma once
 
-#include <utility>
+#include <algorithm>
 
-#include "leeway/alternatives/kernel_ekf.hpp"
 #include "leeway/alternatives/nis_monitor.hpp"
+#include "leeway/alternatives/noise_rounding.hpp"
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/ekf/ekf.hpp"
+#include "leeway/model/heading.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "sim/atlas/watched_filter.hpp"
 
@@ -44,21 +48,30 @@ class CommonDetectors {
   Reports reports_{};
 };
 
-/// KernelEkf of any kind.
-template <class Filter>
-class WatchedKernelEkf final : public WatchedFilter {
+/// BasicEkf over any kernel, with any error.
+template <class Kernel, class Error>
+class WatchedEkf final : public WatchedFilter {
  public:
-  WatchedKernelEkf(Filter filter, const ImuErrorModel& imu)
-      : filter_(std::move(filter)), detectors_(imu) {}
+  explicit WatchedEkf(const BasicEkf<Kernel, Error>& filter, const FixTrust& trust = {})
+      : filter_(filter), trust_(trust), detectors_(filter.inertial().config().imu) {}
 
-  void predict(const ImuIncrement& inc) override { filter_.predict(inc); }
+  void predict(const ImuIncrement& inc) override {
+    filter_.predict(inc);
+    step_s_ = inc.dt_s;
+  }
 
   void update(const GnssFix& fix) override {
-    const FusedFix fused = filter_.update(fix);
-    if (fused.dof == 0) return detectors_.note_unusable();
-    detectors_.note_nis(fused.nis, fused.dof);
-    detectors_.note(fix, filter_.estimate(), filter_.covariance());
-    if (filter_.noise_rounding() > kNoiseLost) detectors_.note_noise_lost();
+    const UpdateOutcome outcome = filter_.update(fix, trust_);
+    if (outcome.dof == 0) return detectors_.note_unusable();
+    const bool is_fused = outcome.outcome == UpdateOutcome::Outcome::kFused;
+    if (outcome.outcome == UpdateOutcome::Outcome::kGated) detectors_.note_gated();
+    if (outcome.covariance_positive) detectors_.note_nis(outcome.nis, outcome.dof);
+    const ErrorMatrix P = filter_.covariance();
+    detectors_.note(fix, filter_.estimate(), P);
+    if (is_fused &&
+        noise_rounding<typename Kernel::Number>(P.diagonal(), noise_of_a_step()) > kNoiseLost) {
+      detectors_.note_noise_lost();
+    }
   }
 
   Estimate estimate() const override { return filter_.estimate(); }
@@ -68,8 +81,16 @@ class WatchedKernelEkf final : public WatchedFilter {
  private:
   static constexpr double kNoiseLost = 0.5;
 
-  Filter filter_;
+  /// Half of what one propagation adds, as it is added before Phi and after.
+  ErrorVector noise_of_a_step() const {
+    const double interval_s = filter_.inertial().config().covariance_interval_s;
+    return noise_variance(filter_.inertial().noise(), 0.5 * std::max(interval_s, step_s_));
+  }
+
+  BasicEkf<Kernel, Error> filter_;
+  FixTrust trust_;
   CommonDetectors detectors_;
+  double step_s_{0.0};  // of the newest increment
 };
 
 }  // namespace leeway::sim

@@ -1,0 +1,88 @@
+#include "leeway/ekf/belief.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/covariance/transition.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/model/process_noise.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kBridgeTurnRadps = 0.5;
+constexpr double kBridgeMaxTurnRad = 1.0;  // beyond, the linearized filter does not find back
+constexpr double kBridgeTiltRad = 0.1;     // roads lean; they do not turn vehicles over
+constexpr double kBridgeAccelerationMps2 = 3.0;
+
+/// Adds what a vehicle may have done over a time in which nobody looked.
+void add_unseen_motion(ErrorMatrix& P, const Eigen::Vector3d& r_e_m, double dt_s) {
+  const double turn_rad = std::min(kBridgeTurnRadps * dt_s, kBridgeMaxTurnRad);
+  const double tilt_rad = std::min(turn_rad, kBridgeTiltRad);
+  const double velocity_mps = kBridgeAccelerationMps2 * dt_s;
+  const double position_m = 0.5 * velocity_mps * dt_s;
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
+  const Eigen::Vector3d psi_n(tilt_rad, tilt_rad, turn_rad);
+  P.block<3, 3>(kPsi, kPsi) += C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
+  P.diagonal().segment<3>(kDv).array() += velocity_mps * velocity_mps;
+  P.diagonal().segment<3>(kDr).array() += position_m * position_m;
+  P.block<3, 3>(kDv, kDr).diagonal().array() += velocity_mps * position_m;
+  P.block<3, 3>(kDr, kDv).diagonal().array() += velocity_mps * position_m;
+}
+
+}  // namespace
+
+void widen(Belief& belief, double factor) {
+  belief.P *= factor;
+  if (!belief.vehicle) return;
+  belief.vehicle->P *= factor;
+  belief.vehicle->cross *= factor;
+}
+
+void restart_motion(Belief& belief, const Eigen::Vector3d& r_e_m, const Eigen::Matrix3d& P_rr_m2,
+                    const Eigen::Vector3d& v_e_mps, const Eigen::Matrix3d& P_vv_m2ps2) {
+  belief.estimate.nav.r_e_m = r_e_m;
+  belief.estimate.nav.v_e_mps = v_e_mps;
+  belief.P.middleRows<6>(kDv).setZero();
+  belief.P.middleCols<6>(kDv).setZero();
+  belief.P.block<3, 3>(kDv, kDv) = P_vv_m2ps2;
+  belief.P.block<3, 3>(kDr, kDr) = P_rr_m2;
+  if (belief.vehicle) belief.vehicle->cross.middleRows<6>(kDv).setZero();
+}
+
+void make_positive_definite(ErrorMatrix& P) {
+  constexpr double kFloor = 1e-9;
+  const ErrorVector sigma = P.diagonal().cwiseAbs().cwiseSqrt().cwiseMax(1e-12);
+  const ErrorVector inverse = sigma.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<ErrorMatrix> eigen(
+      ErrorMatrix(inverse.asDiagonal() * P * inverse.asDiagonal()));
+  const ErrorVector raised = eigen.eigenvalues().cwiseMax(kFloor);
+  const ErrorMatrix correlation =
+      eigen.eigenvectors() * raised.asDiagonal() * eigen.eigenvectors().transpose();
+  P = sigma.asDiagonal() * correlation * sigma.asDiagonal();
+  P = (0.5 * (P + P.transpose())).eval();
+}
+
+void bridge(Belief& belief, Time to, const ProcessNoise& noise) {
+  NavState& nav = belief.estimate.nav;
+  const double dt_s = to_seconds(to - nav.time);
+  nav.r_e_m += dt_s * nav.v_e_mps;
+  nav.time = to;
+  Transition Phi;
+  Phi.dt_s = dt_s;
+  Phi.r.middleCols<3>(kDv) = dt_s * Eigen::Matrix3d::Identity();
+  propagate(belief.P, Phi, noise);
+  if (belief.vehicle) propagate(*belief.vehicle, Phi);
+  add_unseen_motion(belief.P, nav.r_e_m, dt_s);
+}
+
+bool is_sane(const Estimate& estimate, const ErrorMatrix& P) {
+  constexpr double kLargest = 1e30;
+  const double sizes = estimate.nav.r_e_m.squaredNorm() + estimate.nav.v_e_mps.squaredNorm() +
+                       estimate.nav.q_eb.squaredNorm() + estimate.bias.b_a_mps2.squaredNorm() +
+                       estimate.bias.b_g_radps.squaredNorm();
+  return sizes < kLargest && P.cwiseAbs().sum() < kLargest;
+}
+
+}  // namespace leeway

@@ -1,0 +1,111 @@
+#include "filters/ekf/joint_update.hpp"
+
+#include "filters/covariance/cholesky.hpp"
+#include "filters/covariance/measurement_update.hpp"
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/ekf/update_outcome.hpp"
+
+namespace leeway {
+namespace {
+
+/// The directions of the error state that an update leaves alone, as columns; zero for none.
+using HeldDirections = Eigen::Matrix<double, kErrorStates, 2>;
+
+HeldDirections directions_of(Held held, const Estimate& estimate) {
+  HeldDirections U = HeldDirections::Zero();
+  if (held == Held::kNothing) return U;
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
+  U.col(0).segment<3>(kPsi) = down_e;
+  if (held == Held::kHeadingAndTurn) {
+    U.col(1).segment<3>(kBg) = estimate.nav.q_eb.conjugate() * down_e;
+  }
+  return U;
+}
+
+/// scalar_update() with a gain that has nothing along U. By Joseph's form with that gain, P is the
+/// one of the full update and s d d^T, s the innovation's variance and d the gain left out.
+template <class Matrix, class Vector>
+void held_scalar_update(Matrix& P, Vector& x, const Vector& h, double z, const HeldDirections& U) {
+  const Vector Ph = P * h;
+  const double s = h.dot(Ph) + 1.0;
+  Vector left_out = Vector::Zero();
+  left_out.template head<kErrorStates>() =
+      U * (U.transpose() * Ph.template head<kErrorStates>()) / s;
+  const double innovation = z - h.dot(x);
+  scalar_update(P, x, h, z);
+  x -= innovation * left_out;
+  P += s * left_out * left_out.transpose();
+}
+
+/// Takes rows into P. @returns the correction of the N states
+template <int N>
+Eigen::Matrix<double, N, 1> correction_by(Eigen::Matrix<double, N, N>& P, const WhiteMeasurement& m,
+                                          const HeldDirections& U) {
+  const int rows = static_cast<int>(m.z.size());
+  RowColumns<double, N> H = RowColumns<double, N>::Zero();
+  RowValues<double> z = RowValues<double>::Zero();
+  H.topLeftCorner(kErrorStates, rows) = m.H.transpose();
+  if constexpr (N > kErrorStates)
+    H.bottomLeftCorner(kVehicleStates, rows) = m.H_vehicle.transpose();
+  z.head(rows) = m.z;
+  Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
+  const bool nothing_held = U.isZero(0.0);
+  if (nothing_held && update_at_once<double, N>(P, x, rows, H, z, kJosephShrinkage)) return x;
+  for (int i = 0; i < rows; ++i) {
+    const Eigen::Matrix<double, N, 1> h = H.col(i);
+    if (nothing_held) {
+      scalar_update(P, x, h, z(i));
+    } else {
+      held_scalar_update(P, x, h, z(i), U);
+    }
+  }
+  return x;
+}
+
+}  // namespace
+
+WhiteMeasurement whitened(const Measurement& m, int position_rows, double position_weight) {
+  const Cholesky<6> R_factor(m.R);
+  WhiteMeasurement white{R_factor.whitened(m.H), R_factor.whitened(m.H_vehicle),
+                         R_factor.whitened(m.innovation)};
+  white.H.topRows(position_rows) *= position_weight;
+  white.z.head(position_rows) *= position_weight;
+  return white;
+}
+
+MeasurementMatrix innovation_covariance(const Measurement& m, const ErrorMatrix& P,
+                                        const VehicleState* vehicle) {
+  MeasurementMatrix S = m.R;
+  for (int i = 0; i < m.rows(); ++i) {
+    const ErrorVector h = m.H.row(i);
+    ErrorVector Ph = P * h;
+    VehicleVector Ph_vehicle = VehicleVector::Zero();
+    if (vehicle != nullptr) {
+      const VehicleVector h_vehicle = m.H_vehicle.row(i);
+      Ph += vehicle->cross * h_vehicle;
+      Ph_vehicle = vehicle->cross.transpose() * h + vehicle->P * h_vehicle;
+    }
+    for (int j = i; j < m.rows(); ++j) {
+      S(j, i) += m.H.row(j).dot(Ph) + m.H_vehicle.row(j).dot(Ph_vehicle);
+      S(i, j) = S(j, i);
+    }
+  }
+  return S;
+}
+
+ErrorVector update_jointly(Belief& belief, const WhiteMeasurement& m, Held held) {
+  const HeldDirections U = directions_of(held, belief.estimate);
+  if (!belief.vehicle) return correction_by(belief.P, m, U);
+  VehicleState& vehicle = *belief.vehicle;
+  JointMatrix P;
+  P << belief.P, vehicle.cross, vehicle.cross.transpose(), vehicle.P;
+  const JointVector x = correction_by(P, m, U);
+  belief.P = P.topLeftCorner<kErrorStates, kErrorStates>();
+  vehicle.cross = P.topRightCorner<kErrorStates, kVehicleStates>();
+  vehicle.P = P.bottomRightCorner<kVehicleStates, kVehicleStates>();
+  vehicle.value += x.tail<kVehicleStates>();
+  return x.head<kErrorStates>();
+}
+
+}  // namespace leeway

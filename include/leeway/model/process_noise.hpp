@@ -1,0 +1,52 @@
+/// @file
+/// The white noise that drives the error state, from the error model of the IMU.
+#pragma once
+
+#include <limits>
+
+#include "leeway/model/error_state.hpp"
+#include "leeway/sensors/imu_error_model.hpp"
+
+namespace leeway {
+
+/// White noise that drives the error state, as power spectral densities; isotropic per triad.
+struct ProcessNoise {
+  double attitude_rad2_per_s{};  ///< gyro white noise, squared density
+  double velocity_m2_per_s3{};   ///< accelerometer white noise, squared density
+  double b_a_m2_per_s5{};        ///< drive of the accelerometer bias
+  double b_g_rad2_per_s3{};      ///< drive of the gyro bias
+  double tau_a_s{std::numeric_limits<double>::infinity()};  ///< decay of the accelerometer bias
+  double tau_g_s{std::numeric_limits<double>::infinity()};  ///< decay of the gyro bias
+};
+
+/// Variance that the noise adds to each of the 15 errors over a time.
+inline ErrorVector noise_variance(const ProcessNoise& noise, double dt_s) {
+  ErrorVector variance = ErrorVector::Zero();
+  variance.segment<3>(kPsi).setConstant(dt_s * noise.attitude_rad2_per_s);
+  variance.segment<3>(kDv).setConstant(dt_s * noise.velocity_m2_per_s3);
+  variance.segment<3>(kBa).setConstant(dt_s * noise.b_a_m2_per_s5);
+  variance.segment<3>(kBg).setConstant(dt_s * noise.b_g_rad2_per_s3);
+  return variance;
+}
+
+/// Share of a triad's bias model that the filter carries.
+enum class BiasState {
+  kModelled,    ///< as process_noise() has it (default)
+  kRandomWalk,  ///< the same drive without the decay: a state that needs no exponential
+  kConstant,    ///< as uncertain at the start, and constant
+  kNone,        ///< no bias: its state stays zero, and certain
+};
+
+/// Choice of bias states by triad.
+struct BiasStates {
+  BiasState accelerometer{BiasState::kModelled};
+  BiasState gyro{BiasState::kModelled};
+};
+
+/// Noise by which a filter follows the model. An in-run bias without a turn-on part is a
+/// Gauss-Markov state. With one it is a random walk of the same drive: a decaying state would pull
+/// the constant part, which does not decay, towards zero.
+/// @throws Error when the model is invalid.
+ProcessNoise process_noise(const ImuErrorModel& model, const BiasStates& biases = {});
+
+}  // namespace leeway
