@@ -7,6 +7,7 @@
 #include "filters/covariance/lanes.hpp"
 #include "filters/covariance/measurement_update.hpp"
 #include "filters/covariance/symmetric_propagation.hpp"
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/model/process_noise.hpp"
 
 namespace leeway {
@@ -90,12 +91,9 @@ void SymmetricKernel<Scalar>::propagate(const ErrorDynamics& step, const Process
 
 template <class Scalar>
 void SymmetricKernel<Scalar>::turn_attitude(const Eigen::Matrix3d& J) {
-  const Eigen::Matrix<Scalar, 3, 3> T = J.cast<Scalar>();
-  Eigen::Matrix<Scalar, 3, kPaddedStates> rows = T * P_.template middleRows<3>(kPsi);
-  const Eigen::Matrix<Scalar, 3, 3> block = rows.template middleCols<3>(kPsi) * T.transpose();
-  rows.template middleCols<3>(kPsi) = Scalar{0.5} * (block + block.transpose());
-  P_.template middleRows<3>(kPsi) = rows;
-  P_.template middleCols<3>(kPsi) = rows.transpose();
+  ErrorMatrix P = matrix();
+  transform_block(P, kPsi, J);
+  set(P);
 }
 
 template <class Scalar>

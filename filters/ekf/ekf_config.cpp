@@ -4,28 +4,10 @@
 #include <string>
 
 #include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway {
 namespace {
-
-void validate(const EkfConfig& config) {
-  if (!config.lever_arm_b_m.allFinite() || config.lever_arm_b_m.norm() > 1000.0) {
-    throw Error("lever_arm_b_m: must be finite and at most 1000 m long");
-  }
-  if (!(config.gate_probability == 0.0 ||
-        (config.gate_probability >= 1e-100 && config.gate_probability < 1.0))) {
-    throw Error("gate_probability is " + std::to_string(config.gate_probability) +
-                ", must be 0 (no gate) or 1e-100 to 1");
-  }
-  if (!(config.gnss_correlation_s >= 0.0 && config.gnss_correlation_s <= 1e6)) {
-    throw Error("gnss_correlation_s is " + std::to_string(config.gnss_correlation_s) +
-                ", must be 0 (white) to 1e6 s");
-  }
-  if (!(config.covariance_interval_s >= 0.0 && config.covariance_interval_s <= 10.0)) {
-    throw Error("covariance_interval_s is " + std::to_string(config.covariance_interval_s) +
-                ", must be 0 to 10 s");
-  }
-}
 
 void validate(const Estimate& estimate) {
   const NavState& nav = estimate.nav;
@@ -43,6 +25,8 @@ void validate(const Estimate& estimate) {
 }
 
 }  // namespace
+
+void validate(const EkfConfig& config) { validate_fields("filter", config); }
 
 void validate(const EkfConfig& config, const Estimate& estimate) {
   validate(config);

@@ -1,18 +1,15 @@
 #include "leeway/model/horizontal.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <string>
 
 #include "leeway/earth/earth.hpp"
-#include "leeway/earth/error.hpp"
 
 namespace leeway {
 namespace {
-
-constexpr std::array<std::string_view, 3> kMetricNames{"drms", "r95", "axis"};
 
 /// Variances along the principal axes, larger first.
 Eigen::Vector2d principal_variances(const Eigen::Matrix2d& P) {
@@ -52,17 +49,6 @@ Tail tail(const Eigen::Vector2d& variances, double r) {
 }
 
 }  // namespace
-
-std::string_view name(HorizontalMetric metric) {
-  return kMetricNames[static_cast<std::size_t>(metric)];
-}
-
-HorizontalMetric horizontal_metric_from_name(std::string_view wanted) {
-  for (const HorizontalMetric metric : kHorizontalMetrics) {
-    if (name(metric) == wanted) return metric;
-  }
-  throw Error("unknown metric '" + std::string(wanted) + "': use one of drms, r95, axis");
-}
 
 Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
                                       const Eigen::Matrix3d& P_rr_e_m2) {

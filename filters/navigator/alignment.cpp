@@ -8,6 +8,7 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {
@@ -47,14 +48,7 @@ EulerAngles level(const Eigen::Vector3d& f_b_mps2, const Eigen::Vector3d& f_leve
 
 Aligner::Aligner(const AlignmentConfig& config, const EkfConfig& filter)
     : config_(config), filter_(filter) {
-  require_positive("alignment", "min_speed_mps", config.min_speed_mps);
-  require_positive("alignment", "sideslip_rad", config.sideslip_rad);
-  require_positive("alignment", "tilt_floor_rad", config.tilt_floor_rad);
-  require_positive("alignment", "max_fix_interval_s", config.max_fix_interval_s);
-  require_positive("alignment", "rest_speed_mps", config.rest_speed_mps);
-  require_positive("alignment", "rest_turn_rad", config.rest_turn_rad);
-  require_positive("alignment", "min_level_s", config.min_level_s);
-  require_positive("alignment", "min_rest_s", config.min_rest_s);
+  validate_fields("alignment", config);
 }
 
 void Aligner::push(const ImuIncrement& inc) {

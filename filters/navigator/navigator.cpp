@@ -5,6 +5,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/model/claimed_solution.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {
@@ -63,41 +64,15 @@ Verdict judge(const R& reading) {
 
 }  // namespace
 
-std::string_view name(Verdict verdict) {
-  constexpr std::array<std::string_view, kVerdicts> kNames{
-      "accepted",   "aligning", "fused",      "gated",        "reset",
-      "gap",        "late",     "duplicate",  "out_of_order", "future",
-      "clock_jump", "unused",   "not_finite", "implausible",  "overflow"};
-  return kNames[static_cast<std::size_t>(verdict)];
-}
-
 void validate(const NavigatorConfig& config) {
-  constexpr const char* kOwner = "navigator";
-  const TimingConfig& timing = config.timing;
-  require(config.max_gap_s > 0.0 && config.max_gap_s <= 10.0, kOwner, "max_gap_s", config.max_gap_s,
-          "above 0, at most 10 s");
-  require(config.max_jump_s >= config.max_gap_s && config.max_jump_s <= 1e5, kOwner, "max_jump_s",
-          config.max_jump_s, "max_gap_s to 1e5 s");
-  require(config.max_rate_radps > 0.0, kOwner, "max_rate_radps", config.max_rate_radps, "above 0");
-  require(config.max_force_mps2 > 0.0, kOwner, "max_force_mps2", config.max_force_mps2, "above 0");
-  require(std::abs(timing.position_lag_s) <= 10.0, kOwner, "position_lag_s", timing.position_lag_s,
-          "within 10 s");
-  require(std::abs(timing.velocity_lag_s) <= 10.0, kOwner, "velocity_lag_s", timing.velocity_lag_s,
-          "within 10 s");
-  require(timing.max_lateness_s >= 0.0 && timing.max_lateness_s <= 60.0, kOwner, "max_lateness_s",
-          timing.max_lateness_s, "0 to 60 s");
-  require(timing.max_ahead_s >= 0.0 && timing.max_ahead_s <= 1e4, kOwner, "max_ahead_s",
-          timing.max_ahead_s, "0 to 1e4 s");
-  require(timing.max_imu_rate_hz >= 1.0 && timing.max_imu_rate_hz <= 1e4, kOwner, "max_imu_rate_hz",
-          timing.max_imu_rate_hz, "1 to 1e4 Hz");
+  validate_fields("navigator", config);
+  require("navigator", "max_jump_s", config.max_jump_s, between(config.max_gap_s, 1e5));
   if (config.C_bs && !((*config.C_bs * config.C_bs->transpose() - Eigen::Matrix3d::Identity())
                                .cwiseAbs()
                                .maxCoeff() < 1e-6 &&
                        config.C_bs->determinant() > 0.0)) {
     throw Error("navigator: C_bs must be a proper rotation to 1e-6");
   }
-  // A bad filter configuration is to be told now, not when alignment ends in the middle of a drive.
-  filter_anywhere(config.filter);
 }
 
 Navigator::Navigator(const NavigatorConfig& config)

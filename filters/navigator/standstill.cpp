@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/earth/require.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway {
 namespace {
@@ -41,11 +41,7 @@ StandstillDetector::StandstillDetector(const StandstillConfig& config, const Imu
     : config_(config),
       gyro_noise_rad_per_sqrt_s_(imu.gyro.noise_density),
       force_noise_mps_per_sqrt_s_(imu.accelerometer.noise_density) {
-  require_positive("standstill", "gyro_std_radps", config.gyro_std_radps);
-  require_positive("standstill", "force_std_mps2", config.force_std_mps2);
-  require_positive("standstill", "turn_radps", config.turn_radps);
-  require_positive("standstill", "acceleration_mps2", config.acceleration_mps2);
-  require_positive("standstill", "speed_mps", config.speed_mps);
+  validate_fields("standstill", config);
 }
 
 bool StandstillDetector::push(const ImuBlock& block, const Ekf& filter) {

@@ -5,6 +5,7 @@
 #include "leeway/model/heading.hpp"
 #include "leeway/model/vehicle_measurements.hpp"
 #include "leeway/navigator/aidings.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "lib/earth/require.hpp"
 
 namespace leeway {
@@ -22,24 +23,7 @@ VehicleConfig VehicleConfig::car() {
   return config;
 }
 
-void validate(const VehicleConfig& config) {
-  constexpr const char* kOwner = "vehicle";
-  require_positive(kOwner, "rest_sigma_mps", config.rest_sigma_mps);
-  require_positive(kOwner, "rest_turn_sigma_radps", config.rest_turn_sigma_radps);
-  require_positive(kOwner, "min_speed_mps", config.min_speed_mps);
-  require_positive(kOwner, "right_sigma_mps", config.right_sigma_mps);
-  require_not_negative(kOwner, "right_sigma_m", config.right_sigma_m);
-  require_positive(kOwner, "down_sigma_m2ps2", config.down_sigma_m2ps2);
-  require(std::abs(config.rear_axle_x_m) <= 100.0, kOwner, "rear_axle_x_m", config.rear_axle_x_m,
-          "within 100 m");
-  require_not_negative(kOwner, "rear_axle_sigma_m", config.rear_axle_sigma_m);
-  require_not_negative(kOwner, "mount_sigma_rad", config.mount_sigma_rad);
-  require_not_negative(kOwner, "mount_walk_rad_per_sqrt_s", config.mount_walk_rad_per_sqrt_s);
-  require_not_negative(kOwner, "odometer_scale_sigma", config.odometer_scale_sigma);
-  require_not_negative(kOwner, "odometer_walk_per_sqrt_s", config.odometer_walk_per_sqrt_s);
-  require_not_negative(kOwner, "height_offset_sigma_m", config.height_offset_sigma_m);
-  require_not_negative(kOwner, "height_walk_m_per_sqrt_s", config.height_walk_m_per_sqrt_s);
-}
+void validate(const VehicleConfig& config) { validate_fields("vehicle", config); }
 
 VehicleState vehicle_state(const VehicleConfig& config) {
   VehicleState state;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "leeway/earth/error.hpp"
+#include "lib/logs/log_layout.hpp"
 
 namespace leeway {
 
@@ -35,6 +36,13 @@ void CsvHeader::use(std::span<const NamedColumn> wanted) {
   }
 }
 
+void CsvHeader::require(std::span<const NamedColumn> wanted, const std::string& expected) {
+  if (const auto names = missing(wanted); !names.empty()) {
+    throw Error(path_ + ": missing columns " + join(names) + "; expected " + expected);
+  }
+  use(wanted);
+}
+
 bool CsvHeader::use_group(std::span<const NamedColumn> wanted) {
   const auto names = missing(wanted);
   if (names.size() == wanted.size()) return false;
@@ -44,6 +52,14 @@ bool CsvHeader::use_group(std::span<const NamedColumn> wanted) {
   }
   use(wanted);
   return true;
+}
+
+CsvHeader take_csv_header(LineReader& lines, std::span<const NamedColumn> wanted,
+                          const std::string& expected) {
+  CsvHeader header(first_line(lines, expected), lines.path());
+  header.require(wanted, expected);
+  lines.next();
+  return header;
 }
 
 std::string join(std::span<const std::string_view> names) {

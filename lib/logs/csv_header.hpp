@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/logs/line_reader.hpp"
 #include "lib/logs/text_fields.hpp"
 
 namespace leeway {
@@ -28,6 +29,10 @@ class CsvHeader {
   /// @throws Error when a wanted name stands there twice.
   void use(std::span<const NamedColumn> wanted);
 
+  /// As use(), but all of them must be there.
+  /// @throws Error naming those that are not, and what was expected.
+  void require(std::span<const NamedColumn> wanted, const std::string& expected);
+
   /// As use(), but the columns are there together or not at all: returns whether they are.
   /// @throws Error when only some of them are there.
   bool use_group(std::span<const NamedColumn> wanted);
@@ -39,6 +44,11 @@ class CsvHeader {
   std::vector<Column> columns_;
   std::string path_;
 };
+
+/// The header that a log must begin with, its columns marked; the lines then go on behind it.
+/// @throws Error when the log is empty or a column is missing, saying what was expected.
+CsvHeader take_csv_header(LineReader& lines, std::span<const NamedColumn> wanted,
+                          const std::string& expected);
 
 /// "a, b, c".
 std::string join(std::span<const std::string_view> names);

@@ -1,81 +1,25 @@
 #include "leeway/logs/gnss_log.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
-#include <variant>
-#include <vector>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "lib/logs/csv_header.hpp"
-#include "lib/logs/log_columns.hpp"
-#include "lib/logs/log_source.hpp"
-#include "lib/logs/rtklib_pos.hpp"
+#include "lib/logs/layouts/gnss_layouts.hpp"
 
 namespace leeway {
 namespace {
 
-constexpr std::size_t kKfGinsPositionFields = 7;
-constexpr std::size_t kKfGinsFixFields = 13;
-constexpr std::size_t kSlots = 12;
+/// A layout's parser, and what the options make of its fixes.
+struct ScaledFix {
+  RowParser<GnssFix> parse;
+  GnssLogOptions options;
 
-constexpr std::array kPositionColumns{NamedColumn{"t_s", kTimeColumn},
-                                      NamedColumn{"lat_deg", {0, -90.0, 90.0}},
-                                      NamedColumn{"lon_deg", {1, -360.0, 360.0}},
-                                      NamedColumn{"height_m", {2, -kMaxHeightM, kMaxHeightM}},
-                                      NamedColumn{"pos_std_n_m", sigma_column(3)},
-                                      NamedColumn{"pos_std_e_m", sigma_column(4)},
-                                      NamedColumn{"pos_std_d_m", sigma_column(5)}};
-constexpr std::array kVelocityColumns{NamedColumn{"vn_mps", velocity_column(6)},
-                                      NamedColumn{"ve_mps", velocity_column(7)},
-                                      NamedColumn{"vd_mps", velocity_column(8)},
-                                      NamedColumn{"vel_std_n_mps", sigma_column(9, true)},
-                                      NamedColumn{"vel_std_e_mps", sigma_column(10, true)},
-                                      NamedColumn{"vel_std_d_mps", sigma_column(11, true)}};
-
-std::string gnss_layouts() {
-  return "a CSV header with " + join(kPositionColumns) + " (and " + join(kVelocityColumns) +
-         "), KF-GINS text (7 or 13 numbers separated by blanks), or RTKLIB .pos with its header";
-}
-
-// CSV and KF-GINS text: the same numbers under other separators.
-struct NedParser {
-  LineParser fields{};
-  bool counts_weeks{false};
-  WeekUnroller week{};
-
-  std::optional<Fault> operator()(std::string_view line, GnssFix& fix) {
-    std::array<double, kSlots> values{};
-    std::fill(values.begin() + 6, values.end(), std::numeric_limits<double>::quiet_NaN());
-    if (auto fault = fields.parse(line, fix.time, values)) return fault;
-    if (counts_weeks) fix.time = week.unroll(fix.time);
-    const auto vector_at = [&](std::size_t slot) -> Eigen::Vector3d {
-      return Eigen::Map<const Eigen::Vector3d>(values.data() + slot);
-    };
-    const Geodetic place{values[0] * kRadPerDeg, values[1] * kRadPerDeg, values[2]};
-    fix.position =
-        GnssPosition::from_geodetic(place, vector_at(3).cwiseAbs2().asDiagonal().toDenseMatrix());
-    fix.velocity.reset();
-    if (vector_at(6).allFinite() && vector_at(9).allFinite()) {
-      fix.velocity = GnssVelocity::from_ned(place, vector_at(6),
-                                            vector_at(9).cwiseAbs2().asDiagonal().toDenseMatrix());
-    }
-    return std::nullopt;
-  }
-};
-
-struct GnssRowParser {
-  GnssLogFormat format{};
-  GnssLogOptions options{};
-  std::variant<NedParser, RtklibParser> layout{};
-
-  std::optional<Fault> operator()(std::string_view line, GnssFix& fix) {
-    if (auto fault = std::visit([&](auto& parse) { return parse(line, fix); }, layout))
-      return fault;
+  std::optional<Fault> operator()(std::string_view line, GnssFix& fix) const {
+    if (auto fault = parse(line, fix)) return fault;
     const auto squared = [](double x) { return x * x; };
     fix.time += options.time_offset;
     fix.position->R_e_m2 *= squared(options.position_sigma_scale);
@@ -85,100 +29,31 @@ struct GnssRowParser {
   }
 };
 
-NedParser gnss_csv_parser(std::string_view line, const std::string& path) {
-  CsvHeader header(line, path);
-  if (const auto missing = header.missing(kPositionColumns); !missing.empty()) {
-    throw Error(path + ": missing columns " + join(missing) + "; expected " + gnss_layouts());
-  }
-  header.use(kPositionColumns);
-  header.use_group(kVelocityColumns);
-  return {header.parser()};
-}
-
-NedParser kf_gins_parser(std::size_t field_count, const std::string& path) {
-  if (field_count != kKfGinsPositionFields && field_count != kKfGinsFixFields) {
-    throw Error(path + ": " + std::to_string(field_count) +
-                " fields in a line without a header; expected " + gnss_layouts());
-  }
-  std::vector<Column> columns;
-  for (const NamedColumn& named : kPositionColumns) columns.push_back(named.column);
-  if (field_count == kKfGinsFixFields) {
-    for (const NamedColumn& named : kVelocityColumns) columns.push_back(named.column);
-  }
-  return {{Separator::kRuns, std::move(columns)}, true};
-}
-
-RtklibParser rtklib_parser(LineReader& lines) {
-  RtklibParser parser;
-  while (const auto line = lines.next()) {
-    if (!line->starts_with('%')) {
-      lines.unread();
-      break;
-    }
-    parser.read_header(*line, lines.path());
-  }
-  if (!parser.has_columns()) {
-    throw Error(lines.path() +
-                ": no RTKLIB column header; set the RTKLIB option out-outhead to on");
-  }
-  return parser;
-}
-
-bool starts_with_comment_of_rtklib(LineReader& lines) {
-  const auto line = lines.next();
-  if (line) lines.unread();
-  return line && line->starts_with('%');
-}
-
-GnssRowParser parser_for(LineReader& lines, const GnssLogOptions& options) {
-  if (starts_with_comment_of_rtklib(lines)) {
-    return {GnssLogFormat::kRtklib, options, rtklib_parser(lines)};
-  }
-  const std::string_view line = first_line(lines, gnss_layouts());
-  const auto fields = split_fields(line, Separator::kRuns);
-  if (is_number(fields.front()) && line.find(',') == std::string_view::npos) {
-    return {GnssLogFormat::kKfGins, options, kf_gins_parser(fields.size(), lines.path())};
-  }
-  GnssRowParser parser{GnssLogFormat::kCsv, options, gnss_csv_parser(line, lines.path())};
-  lines.next();  // the header
-  return parser;
-}
-
 void validate_scale(const char* field, double scale) {
   if (scale > 0.0 && std::isfinite(scale)) return;
   throw Error(std::string("GnssLogOptions::") + field + " of " + std::to_string(scale) +
               ": must be finite and > 0");
 }
 
-}  // namespace
-
-struct GnssLogReader::Impl {
-  GnssLogFormat format;
-  LogSource<GnssFix, GnssRowParser> source;
-};
-
-GnssLogReader::GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options) {
+std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
+                                                   const GnssLogOptions& options) {
   validate_scale("position_sigma_scale", options.position_sigma_scale);
   validate_scale("velocity_sigma_scale", options.velocity_sigma_scale);
-  LineReader lines(path);
-  GnssRowParser parser = parser_for(lines, options);
-  const GnssLogFormat format = parser.format;
-  impl_ = std::make_unique<Impl>(
-      Impl{format, LogSource<GnssFix, GnssRowParser>(std::move(lines), std::move(parser))});
+  const LogHead head = read_head(lines);
+  const GnssLayout& layout = layout_of(head, gnss_layouts());
+  ScaledFix parser{layout.parser(head, lines), options};
+  return std::make_unique<LogSource<GnssFix>>(std::move(lines), std::move(parser), layout.name);
 }
 
-GnssLogReader::~GnssLogReader() = default;
-GnssLogReader::GnssLogReader(GnssLogReader&&) noexcept = default;
-GnssLogReader& GnssLogReader::operator=(GnssLogReader&&) noexcept = default;
+}  // namespace
 
-std::optional<GnssFix> GnssLogReader::next() {
-  std::optional<GnssFix> fix = impl_->source.next();
-  if (fix) ++impl_->source.report().records;
-  return fix;
+const std::vector<GnssLayout>& gnss_layouts() {
+  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos()};
+  return kLayouts;
 }
 
-GnssLogFormat GnssLogReader::format() const { return impl_->format; }
-const LogSummary& GnssLogReader::report() const { return impl_->source.report(); }
+GnssLogReader::GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options)
+    : LogReader(gnss_source(LineReader(path), options)) {}
 
 GnssLogWriter::GnssLogWriter(const std::filesystem::path& path)
     : csv_(path,

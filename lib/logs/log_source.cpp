@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "leeway/earth/error.hpp"
-
 namespace leeway {
 namespace {
 
@@ -24,17 +22,6 @@ std::string quoted(std::string_view text) {
 bool is_blank_or_comment(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   return first == std::string_view::npos || line[first] == '#' || line[first] == '%';
-}
-
-std::string_view first_line(LineReader& lines, std::string_view expected) {
-  while (const auto line = lines.next()) {
-    if (is_blank_or_comment(*line)) continue;
-    lines.unread();
-    return *line;
-  }
-  const std::string what =
-      lines.damage().empty() ? lines.path() + ": the file is empty" : lines.damage();
-  throw Error(what + "; expected " + std::string(expected));
 }
 
 std::string damage_message(const LineReader& lines, std::string_view line, const Fault& fault) {

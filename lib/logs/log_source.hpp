@@ -11,14 +11,11 @@
 
 #include "leeway/earth/time.hpp"
 #include "leeway/logs/line_reader.hpp"
+#include "leeway/logs/log_reader.hpp"
 #include "leeway/logs/log_summary.hpp"
 #include "lib/logs/text_fields.hpp"
 
 namespace leeway {
-
-/// The first line that carries something, for telling the format; next() then delivers it again.
-/// @throws Error when there is none, saying what was expected.
-std::string_view first_line(LineReader& lines, std::string_view expected);
 
 /// Blank, or a comment ("#" or "%").
 bool is_blank_or_comment(std::string_view line);
@@ -36,23 +33,30 @@ class WeekUnroller {
   Duration offset_{};
 };
 
-/// Row has a `Time time`; Parser is `std::optional<Fault> operator()(std::string_view, Row&)`.
-template <class Row, class Parser>
-class LogSource {
- public:
-  LogSource(LineReader lines, Parser parser)
-      : lines_(std::move(lines)), parser_(std::move(parser)) {}
+template <class Row>
+Time time_of(const Row& row) {
+  return row.time;
+}
 
-  /// The next row later than the one before.
-  std::optional<Row> next() {
+/// The rows of a log in strictly increasing time. Each counts as a record.
+template <class Row>
+class LogSource final : public RecordSource<Row> {
+ public:
+  LogSource(LineReader lines, RowParser<Row> parser, std::string_view layout = "CSV")
+      : lines_(std::move(lines)), parser_(std::move(parser)), layout_(layout) {}
+
+  std::optional<Row> next() override {
     std::optional<Row> row = held_ ? std::exchange(held_, std::nullopt) : read();
-    if (row && (!last_ || row->time - *last_ > kSuspectJump)) row = settle(std::move(*row));
-    if (row) last_ = row->time;
+    if (row && (!last_ || time_of(*row) - *last_ > kSuspectJump)) row = settle(std::move(*row));
+    if (!row) return row;
+    last_ = time_of(*row);
+    ++report_.records;
     return row;
   }
 
   LogSummary& report() { return report_; }
-  const LogSummary& report() const { return report_; }
+  const LogSummary& report() const override { return report_; }
+  std::string_view layout() const override { return layout_; }
 
  private:
   static constexpr Duration kSuspectJump = std::chrono::seconds{10};
@@ -67,8 +71,8 @@ class LogSource {
         reject(LineDamage::kTooLong);
       } else if (const auto fault = parser_(line_, row)) {
         report_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
-      } else if (last_ && row.time <= *last_) {
-        reject_order(row.time, *last_);
+      } else if (last_ && time_of(row) <= *last_) {
+        reject_order(time_of(row), *last_);
       } else {
         return row;
       }
@@ -83,18 +87,18 @@ class LogSource {
     for (;;) {
       std::string message = damage_message(lines_, line_, {LineDamage::kTimeJumpsAhead, line_});
       std::optional<Row> following = read();
-      while (following && following->time <= row.time &&
-             row.time - following->time <= kSuspectJump) {
-        reject_order(following->time, row.time);
+      while (following && time_of(*following) <= time_of(row) &&
+             time_of(row) - time_of(*following) <= kSuspectJump) {
+        reject_order(time_of(*following), time_of(row));
         following = read();
       }
-      if (!following || following->time > row.time) {
+      if (!following || time_of(*following) > time_of(row)) {
         held_ = std::move(following);
         return row;
       }
       report_.add_damage(LineDamage::kTimeJumpsAhead, std::move(message));
       row = std::move(*following);
-      if (last_ && row.time - *last_ <= kSuspectJump) return row;
+      if (last_ && time_of(row) - *last_ <= kSuspectJump) return row;
     }
   }
 
@@ -107,7 +111,8 @@ class LogSource {
   }
 
   LineReader lines_;
-  Parser parser_;
+  RowParser<Row> parser_;
+  std::string_view layout_;
   LogSummary report_{};
   std::string_view line_{};    // read last
   std::optional<Row> held_{};  // read ahead to settle() the row before it

@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "leeway/earth/error.hpp"
 #include "lib/logs/csv_header.hpp"
 #include "lib/logs/log_columns.hpp"
 #include "lib/logs/log_source.hpp"
@@ -24,44 +23,21 @@ struct ScalarRowParser {
   }
 };
 
-ScalarRowParser scalar_parser(LineReader& lines, const ScalarColumns& columns) {
+std::unique_ptr<RecordSource<ScalarRecord>> scalar_source(LineReader lines,
+                                                          const ScalarColumns& columns) {
   const std::array wanted{NamedColumn{"t_s", kTimeColumn},
                           NamedColumn{columns.value, {0, -columns.largest, columns.largest}}};
   const std::array sigma{NamedColumn{columns.sigma, {1, kLeastSigma, columns.largest, true}}};
   const std::string expected = "a CSV header with " + join(wanted) + " (and " + join(sigma) + ")";
-  CsvHeader header(first_line(lines, expected), lines.path());
-  if (const auto missing = header.missing(wanted); !missing.empty()) {
-    throw Error(lines.path() + ": missing columns " + join(missing) + "; expected " + expected);
-  }
-  header.use(wanted);
+  CsvHeader header = take_csv_header(lines, wanted, expected);
   header.use_group(sigma);
-  lines.next();  // the header
-  return {header.parser()};
+  return std::make_unique<LogSource<ScalarRecord>>(std::move(lines),
+                                                   ScalarRowParser{header.parser()});
 }
 
 }  // namespace
 
-struct ScalarLogReader::Impl {
-  LogSource<ScalarRecord, ScalarRowParser> source;
-};
-
-ScalarLogReader::ScalarLogReader(const std::filesystem::path& path, const ScalarColumns& columns) {
-  LineReader lines(path);
-  ScalarRowParser parser = scalar_parser(lines, columns);
-  impl_ = std::make_unique<Impl>(
-      Impl{LogSource<ScalarRecord, ScalarRowParser>(std::move(lines), std::move(parser))});
-}
-
-ScalarLogReader::~ScalarLogReader() = default;
-ScalarLogReader::ScalarLogReader(ScalarLogReader&&) noexcept = default;
-ScalarLogReader& ScalarLogReader::operator=(ScalarLogReader&&) noexcept = default;
-
-std::optional<ScalarRecord> ScalarLogReader::next() {
-  const std::optional<ScalarRecord> row = impl_->source.next();
-  if (row) ++impl_->source.report().records;
-  return row;
-}
-
-const LogSummary& ScalarLogReader::report() const { return impl_->source.report(); }
+ScalarLogReader::ScalarLogReader(const std::filesystem::path& path, const ScalarColumns& columns)
+    : LogReader(scalar_source(LineReader(path), columns)) {}
 
 }  // namespace leeway

@@ -1,51 +1,38 @@
 #include "leeway/logs/solution_writer.hpp"
 
-#include <array>
+#include <initializer_list>
+#include <vector>
 
 namespace leeway {
 namespace {
 
-constexpr int kGeodeticDecimals = 10;
-constexpr int kMetreDecimals = 5;
-constexpr int kAngleDecimals = 7;
-constexpr int kSingle = CsvColumn::kSingle;
+std::vector<CsvColumn> solution_columns() {
+  std::vector<CsvColumn> columns;
+  const auto add = [&columns](int decimals, std::initializer_list<const char*> names) {
+    for (const char* name : names) columns.emplace_back(name, decimals);
+  };
+  add(10, {"t_s", "lat_deg", "lon_deg"});
+  add(5, {"height_m", "vn_mps", "ve_mps", "vd_mps"});
+  add(7, {"roll_deg", "pitch_deg", "yaw_deg"});
+  add(CsvColumn::kSingle, {"b_ax_mps2",        "b_ay_mps2",
+                           "b_az_mps2",        "b_gx_radps",
+                           "b_gy_radps",       "b_gz_radps",
+                           "sigma_n_m",        "sigma_e_m",
+                           "sigma_d_m",        "sigma_vn_mps",
+                           "sigma_ve_mps",     "sigma_vd_mps",
+                           "sigma_roll_deg",   "sigma_pitch_deg",
+                           "sigma_yaw_deg",    "sigma_b_ax_mps2",
+                           "sigma_b_ay_mps2",  "sigma_b_az_mps2",
+                           "sigma_b_gx_radps", "sigma_b_gy_radps",
+                           "sigma_b_gz_radps", "nis"});
+  add(0, {"nis_dof"});
+  return columns;
+}
 
 }  // namespace
 
 SolutionWriter::SolutionWriter(const std::filesystem::path& path)
-    : csv_(path, {{"t_s"},
-                  {"lat_deg", kGeodeticDecimals},
-                  {"lon_deg", kGeodeticDecimals},
-                  {"height_m", kMetreDecimals},
-                  {"vn_mps", kMetreDecimals},
-                  {"ve_mps", kMetreDecimals},
-                  {"vd_mps", kMetreDecimals},
-                  {"roll_deg", kAngleDecimals},
-                  {"pitch_deg", kAngleDecimals},
-                  {"yaw_deg", kAngleDecimals},
-                  {"b_ax_mps2", kSingle},
-                  {"b_ay_mps2", kSingle},
-                  {"b_az_mps2", kSingle},
-                  {"b_gx_radps", kSingle},
-                  {"b_gy_radps", kSingle},
-                  {"b_gz_radps", kSingle},
-                  {"sigma_n_m", kSingle},
-                  {"sigma_e_m", kSingle},
-                  {"sigma_d_m", kSingle},
-                  {"sigma_vn_mps", kSingle},
-                  {"sigma_ve_mps", kSingle},
-                  {"sigma_vd_mps", kSingle},
-                  {"sigma_roll_deg", kSingle},
-                  {"sigma_pitch_deg", kSingle},
-                  {"sigma_yaw_deg", kSingle},
-                  {"sigma_b_ax_mps2", kSingle},
-                  {"sigma_b_ay_mps2", kSingle},
-                  {"sigma_b_az_mps2", kSingle},
-                  {"sigma_b_gx_radps", kSingle},
-                  {"sigma_b_gy_radps", kSingle},
-                  {"sigma_b_gz_radps", kSingle},
-                  {"nis", kSingle},
-                  {"nis_dof", 0}}) {}
+    : csv_(path, solution_columns()) {}
 
 void SolutionWriter::write(const Solution& solution) {
   const NavStateNed nav = ned_from_nav_state(solution.nav);

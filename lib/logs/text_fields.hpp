@@ -2,6 +2,7 @@
 /// Numbers in the fields of a text line. Private to the log readers.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -52,6 +53,10 @@ class LineParser {
   Separator separator_{Separator::kComma};
   std::vector<Column> columns_;
 };
+
+/// Fills a row from a line, or tells what is wrong with it.
+template <class Row>
+using RowParser = std::function<std::optional<Fault>(std::string_view line, Row& row)>;
 
 /// Decimal seconds at the start of the text, to the nearest nanosecond: exact where a double would
 /// round, as for seconds since 1980. On success moves `first` behind it.

@@ -11,6 +11,9 @@
 #include "lib/logs/log_source.hpp"
 
 namespace leeway {
+
+static Time time_of(const TruthRecord& record) { return record.nav.time; }
+
 namespace {
 
 constexpr double kMaxAngleDeg = 720.0;
@@ -29,46 +32,36 @@ constexpr std::array kTruthAttitude{NamedColumn{"roll_deg", angle(6)},
                                     NamedColumn{"pitch_deg", angle(7)},
                                     NamedColumn{"yaw_deg", angle(8)}};
 
-struct TruthRow {
-  Time time{};
-  TruthRecord record{};
-};
-
 struct TruthRowParser {
   LineParser fields{};
 
-  std::optional<Fault> operator()(std::string_view line, TruthRow& row) const {
+  std::optional<Fault> operator()(std::string_view line, TruthRecord& record) const {
     std::array<double, 9> values{};
     std::fill(values.begin() + 3, values.end(), kNan);
-    if (auto fault = fields.parse(line, row.time, values)) return fault;
-    row.record = TruthRecord{};
-    NavStateNed& nav = row.record.nav;
-    nav.time = row.time;
+    record = TruthRecord{};
+    NavStateNed& nav = record.nav;
+    if (auto fault = fields.parse(line, nav.time, values)) return fault;
     nav.position = {values[0] * kRadPerDeg, values[1] * kRadPerDeg, values[2]};
     const Eigen::Map<const Eigen::Vector3d> v_n_mps(values.data() + 3);
     const Eigen::Map<const Eigen::Vector3d> rpy_deg(values.data() + 6);
-    row.record.has_velocity = v_n_mps.allFinite();
-    row.record.has_attitude = rpy_deg.allFinite();
-    if (row.record.has_velocity) nav.v_n_mps = v_n_mps;
-    if (row.record.has_attitude) {
+    record.has_velocity = v_n_mps.allFinite();
+    record.has_attitude = rpy_deg.allFinite();
+    if (record.has_velocity) nav.v_n_mps = v_n_mps;
+    if (record.has_attitude) {
       nav.attitude = {rpy_deg.x() * kRadPerDeg, rpy_deg.y() * kRadPerDeg, rpy_deg.z() * kRadPerDeg};
     }
     return std::nullopt;
   }
 };
 
-TruthRowParser truth_parser(LineReader& lines) {
+std::unique_ptr<RecordSource<TruthRecord>> truth_source(LineReader lines) {
   const std::string expected = "a CSV header with " + join(kTruthPosition) + " (and " +
                                join(kTruthVelocity) + ", " + join(kTruthAttitude) + ")";
-  CsvHeader header(first_line(lines, expected), lines.path());
-  if (const auto missing = header.missing(kTruthPosition); !missing.empty()) {
-    throw Error(lines.path() + ": missing columns " + join(missing) + "; expected " + expected);
-  }
-  header.use(kTruthPosition);
+  CsvHeader header = take_csv_header(lines, kTruthPosition, expected);
   header.use_group(kTruthVelocity);
   header.use_group(kTruthAttitude);
-  lines.next();  // the header
-  return {header.parser()};
+  return std::make_unique<LogSource<TruthRecord>>(std::move(lines),
+                                                  TruthRowParser{header.parser()});
 }
 
 double mix(double a, double b, double fraction) { return a + fraction * (b - a); }
@@ -100,29 +93,8 @@ TruthRecord mix(const TruthRecord& a, const TruthRecord& b, Time t) {
 
 }  // namespace
 
-struct TruthLogReader::Impl {
-  LogSource<TruthRow, TruthRowParser> source;
-};
-
-TruthLogReader::TruthLogReader(const std::filesystem::path& path) {
-  LineReader lines(path);
-  TruthRowParser parser = truth_parser(lines);
-  impl_ = std::make_unique<Impl>(
-      Impl{LogSource<TruthRow, TruthRowParser>(std::move(lines), std::move(parser))});
-}
-
-TruthLogReader::~TruthLogReader() = default;
-TruthLogReader::TruthLogReader(TruthLogReader&&) noexcept = default;
-TruthLogReader& TruthLogReader::operator=(TruthLogReader&&) noexcept = default;
-
-std::optional<TruthRecord> TruthLogReader::next() {
-  const std::optional<TruthRow> row = impl_->source.next();
-  if (!row) return std::nullopt;
-  ++impl_->source.report().records;
-  return row->record;
-}
-
-const LogSummary& TruthLogReader::report() const { return impl_->source.report(); }
+TruthLogReader::TruthLogReader(const std::filesystem::path& path)
+    : LogReader(truth_source(LineReader(path))) {}
 
 TruthTrack::TruthTrack(TruthLogReader reader) : reader_(std::move(reader)) {
   after_ = reader_.next();

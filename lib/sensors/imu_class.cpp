@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string>
 
-#include "leeway/earth/error.hpp"
 #include "leeway/earth/units.hpp"
 
 namespace leeway {
@@ -29,23 +27,20 @@ struct Range {
 };
 
 struct Table1Row {
-  std::string_view name;
   Range accelerometer_drift_mps2;
   Range gyro_drift_radps;
   Range accelerometer_noise_ug_per_sqrt_hz;
   Range gyro_noise_deg_per_sqrt_h;
 };
 
-// [seed Table 1]
+// [seed Table 1], in the order of ImuClass
 constexpr std::array<Table1Row, 5> kTable1{{
-    {"marine", {1e-4, 1e-4}, {5e-9, 5e-9}, {5.0, 20.0}, {0.0005, 0.002}},
-    {"aviation", {3e-4, 1e-3}, {5e-8, 5e-8}, {20.0, 20.0}, {0.002, 0.002}},
-    {"intermediate", {1e-3, 1e-2}, {5e-7, 5e-7}, {20.0, 100.0}, {0.002, 0.03}},
-    {"tactical", {1e-2, 1e-1}, {5e-6, 5e-6}, {100.0, 1000.0}, {0.03, 1.0}},
-    {"automotive", {1e-1, 1e-1}, {5e-4, 5e-4}, {1000.0, 1000.0}, {1.0, 1.0}},
+    {{1e-4, 1e-4}, {5e-9, 5e-9}, {5.0, 20.0}, {0.0005, 0.002}},
+    {{3e-4, 1e-3}, {5e-8, 5e-8}, {20.0, 20.0}, {0.002, 0.002}},
+    {{1e-3, 1e-2}, {5e-7, 5e-7}, {20.0, 100.0}, {0.002, 0.03}},
+    {{1e-2, 1e-1}, {5e-6, 5e-6}, {100.0, 1000.0}, {0.03, 1.0}},
+    {{1e-1, 1e-1}, {5e-4, 5e-4}, {1000.0, 1000.0}, {1.0, 1.0}},
 }};
-
-constexpr std::array<std::string_view, 3> kRangeEndNames{"low", "mid", "high"};
 
 const Table1Row& row(ImuClass c) { return kTable1[static_cast<std::size_t>(c)]; }
 
@@ -58,34 +53,11 @@ ImuClass nearest(Range Table1Row::*range, double value) {
     const double outside = std::max(std::log(r.low / value), std::log(value / r.high));
     return outside > kRounding ? outside : 0.0;
   };
-  return *std::min_element(kImuClasses.begin(), kImuClasses.end(),
+  return *std::min_element(kAll<ImuClass>.begin(), kAll<ImuClass>.end(),
                            [&](ImuClass a, ImuClass b) { return distance(a) < distance(b); });
 }
 
-template <class Value, std::size_t N>
-Value from_name(const std::array<Value, N>& values, std::string_view wanted, const char* what) {
-  std::string known;
-  for (const Value value : values) {
-    if (name(value) == wanted) return value;
-    known += (known.empty() ? "" : ", ") + std::string(name(value));
-  }
-  throw Error("unknown " + std::string(what) + " '" + std::string(wanted) + "': use one of " +
-              known);
-}
-
 }  // namespace
-
-std::string_view name(ImuClass c) { return row(c).name; }
-
-std::string_view name(RangeEnd end) { return kRangeEndNames[static_cast<std::size_t>(end)]; }
-
-ImuClass imu_class_from_name(std::string_view wanted) {
-  return from_name(kImuClasses, wanted, "IMU class");
-}
-
-RangeEnd range_end_from_name(std::string_view wanted) {
-  return from_name(kRangeEnds, wanted, "range end");
-}
 
 ImuErrorModel imu_class_model(ImuClass c, RangeEnd end) {
   const Table1Row& table = row(c);

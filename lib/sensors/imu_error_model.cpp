@@ -1,9 +1,8 @@
 #include "leeway/sensors/imu_error_model.hpp"
 
 #include <cmath>
-#include <sstream>
 
-#include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway {
 namespace {
@@ -23,38 +22,11 @@ double integral_variance(double a) {
   return sum;
 }
 
-// The message is put together only when it is needed: a filter is made, and its model validated, in
-// the middle of a drive, where nothing may touch the heap.
-void require(bool ok, const char* owner, const char* field, double value, const char* range) {
-  if (ok) return;
-  std::ostringstream message;
-  message << "IMU error model: " << owner << field << " is " << value << ", must be " << range;
-  throw Error(message.str());
-}
-
-void require_non_negative(const char* owner, const char* field, double value) {
-  require(std::isfinite(value) && value >= 0.0, owner, field, value, "finite and >= 0");
-}
-
-void validate(const TriadErrorModel& triad, const char* owner) {
-  require(triad.bias.allFinite(), owner, "bias", triad.bias.norm(), "finite");
-  require(triad.M.allFinite(), owner, "M", triad.M.norm(), "finite");
-  require_non_negative(owner, "bias_sigma", triad.bias_sigma);
-  require_non_negative(owner, "scale_sigma", triad.scale_sigma);
-  require_non_negative(owner, "misalignment_sigma_rad", triad.misalignment_sigma_rad);
-  require_non_negative(owner, "noise_density", triad.noise_density);
-  require_non_negative(owner, "in_run.sigma", triad.in_run.sigma);
-  require(triad.in_run.tau_s > 0.0, owner, "in_run.tau_s", triad.in_run.tau_s, "> 0");
-  require_non_negative(owner, "quantum", triad.quantum);
-  require(triad.range > 0.0, owner, "range", triad.range, "> 0");
-}
-
 }  // namespace
 
 GaussMarkovStep discretize(const GaussMarkov& process, double dt_s) {
-  require(std::isfinite(dt_s) && dt_s > 0.0, "", "dt_s", dt_s, "finite and > 0");
-  require_non_negative("", "sigma", process.sigma);
-  require(process.tau_s > 0.0, "", "tau_s", process.tau_s, "> 0");
+  require("Gauss-Markov process", "dt_s", dt_s, kPositive);
+  validate_fields("Gauss-Markov process", process);
   GaussMarkovStep step;
   if (std::isinf(process.tau_s)) {
     step.integral_gain_s = dt_s;
@@ -73,12 +45,6 @@ GaussMarkovStep discretize(const GaussMarkov& process, double dt_s) {
   return step;
 }
 
-void validate(const ImuErrorModel& model) {
-  validate(model.accelerometer, "accelerometer.");
-  validate(model.gyro, "gyro.");
-  require(model.G_g_radps_per_mps2.allFinite(), "", "G_g_radps_per_mps2",
-          model.G_g_radps_per_mps2.norm(), "finite");
-  require_non_negative("", "G_g_sigma_radps_per_mps2", model.G_g_sigma_radps_per_mps2);
-}
+void validate(const ImuErrorModel& model) { validate_fields("IMU error model", model); }
 
 }  // namespace leeway

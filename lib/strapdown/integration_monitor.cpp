@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lib/strapdown/scheme_terms.hpp"
+
 namespace leeway {
 namespace {
 
@@ -67,22 +69,11 @@ void IntegrationMonitor::push(const ImuIncrement& inc) {
 
 LeftOut IntegrationMonitor::left_out(Scheme scheme) const {
   if (window_s_ < kFirstS) return {};
-  switch (scheme) {
-    case Scheme::kExplicitEuler:
-    case Scheme::kSemiImplicitEuler:
-      return first_order_ + pair_ + beyond_;
-    case Scheme::kTrapezoid:
-    case Scheme::kOneSample:
-      return pair_ + beyond_;
-    case Scheme::kConing:
-      return LeftOut{Eigen::Vector3d::Zero(), pair_.force_b_mps2} + beyond_;
-    case Scheme::kSculling:
-      return LeftOut{pair_.rate_b_radps, Eigen::Vector3d::Zero()} + beyond_;
-    case Scheme::kTwoSample:
-    case Scheme::kRungeKutta4:
-      break;
-  }
-  return beyond_;
+  const SchemeTerms takes = scheme_terms(scheme);
+  LeftOut left_out = takes.turning_force ? LeftOut{} : first_order_;
+  if (!takes.coning) left_out.rate_b_radps += pair_.rate_b_radps;
+  if (!takes.sculling) left_out.force_b_mps2 += pair_.force_b_mps2;
+  return left_out + beyond_;
 }
 
 bool IntegrationMonitor::resolves_motion() const {

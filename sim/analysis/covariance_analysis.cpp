@@ -22,22 +22,6 @@ using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then t
 
 constexpr double kSettledRelative = 1e-3;
 
-constexpr std::array<std::string_view, 15> kSourceNames{"initial",
-                                                        "accelerometer_bias",
-                                                        "accelerometer_drift",
-                                                        "accelerometer_noise",
-                                                        "accelerometer_scale",
-                                                        "accelerometer_misalignment",
-                                                        "gyro_bias",
-                                                        "gyro_drift",
-                                                        "gyro_noise",
-                                                        "gyro_scale",
-                                                        "gyro_misalignment",
-                                                        "gyro_g_sensitivity",
-                                                        "gnss_position",
-                                                        "gnss_correlated",
-                                                        "gnss_velocity"};
-
 /// A step must resolve the sensors' in-run drift.
 double step_limit_s(const ImuErrorModel& imu) {
   double shortest_s = std::numeric_limits<double>::infinity();
@@ -65,7 +49,7 @@ class Analysis {
         config_(config),
         pair_(scene, config.by_source),
         window_s_(scored_part_s(scene)),
-        sigma_(fix_variance(scene.gnss.errors).cwiseSqrt()) {}
+        weight_(scene.filter.gnss_correlation_s) {}
 
   CovarianceAnalysis run() {
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
@@ -82,13 +66,12 @@ class Analysis {
 
  private:
   double advance(SceneCovariance& pair, double from_s, double to_s) const {
-    while (from_s < to_s) {
-      const Leg leg = track_.leg(from_s, to_s);
+    const bool is_watched = &pair == &pair_ && config_.observer;
+    track_.follow(from_s, to_s, [&](const Leg& leg) {
       pair.propagate(leg);
-      from_s = leg.end_s;
-      const bool on_the_way = &pair == &pair_ && from_s < to_s;
-      if (on_the_way && config_.observer) config_.observer(point(pair, from_s, Moment::kBetween));
-    }
+      if (!is_watched || leg.end_s >= to_s) return;
+      config_.observer(point(pair, leg.end_s, Moment::kBetween));
+    });
     return to_s;
   }
 
@@ -115,12 +98,10 @@ class Analysis {
     const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
     if (config_.observer) config_.observer(before);
     if (window_.index > 0) return;
-    const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(before.r_e_m));
-    const auto horizontal = [&](const ErrorMatrix& P) -> Eigen::Matrix2d {
-      return C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>();
-    };
-    const Eigen::Matrix2d claimed = horizontal(before.claimed);
-    const Eigen::Matrix2d truth = horizontal(before.truth);
+    const Eigen::Matrix2d claimed =
+        horizontal_covariance(before.r_e_m, before.claimed.block<3, 3>(kDr, kDr));
+    const Eigen::Matrix2d truth =
+        horizontal_covariance(before.r_e_m, before.truth.block<3, 3>(kDr, kDr));
     ++window_.fixes;
     window_.claimed_sum_m2 += claimed.trace();
     window_.true_sum_m2 += truth.trace();
@@ -131,7 +112,7 @@ class Analysis {
     r.true_m = true_m;
     r.worst_s = t_s;
     r.worst = before;
-    if (config_.by_source) r.budget = pair.budget(C_en);
+    if (config_.by_source) r.budget = pair.budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
   }
 
   void enter_window(double t_s) {
@@ -174,25 +155,10 @@ class Analysis {
 
   void update() {
     const TruthPoint truth = truth_at(scene_.trajectory, now_s_);
-    Estimate estimate;
-    estimate.nav = truth.nav;
-    const GnssFix fix{truth.nav.time, GnssPosition{}, GnssVelocity{}};
-    const Measurement m =
-        gnss_measurement(fix, estimate, scene_.filter.lever_arm_b_m, truth.omega_ib_b_radps);
-    const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
-    const double weight =
-        last_fix_s_ ? gnss_position_weight(now_s_ - *last_fix_s_, scene_.filter.gnss_correlation_s)
-                    : 1.0;
-    last_fix_s_ = now_s_;
+    pair_.update(fix_rows(truth.nav, truth.omega_ib_b_radps, scene_.filter.lever_arm_b_m,
+                          scene_.gnss.errors, weight_.of(truth.nav.time)));
+    weight_.fused(truth.nav.time);
     ++fixes_;
-    for (int axis = 0; axis < 6; ++axis) {
-      const int first_row = axis < 3 ? 0 : 3;
-      ScalarGain gain;
-      gain.axis = axis;
-      gain.per_sigma = (axis < 3 ? weight : 1.0) / sigma_(axis);
-      gain.h = gain.per_sigma * (C_ne.row(axis % 3) * m.H.middleRows<3>(first_row)).transpose();
-      pair_.update(gain);
-    }
     if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
   }
 
@@ -201,9 +167,8 @@ class Analysis {
   const CovarianceConfig& config_;
   SceneCovariance pair_;
   double window_s_;
-  Eigen::Matrix<double, 6, 1> sigma_;  // of the fixes, as the filter is told
+  PositionWeight weight_;
   double now_s_{0.0};
-  std::optional<double> last_fix_s_{};
   std::size_t fixes_{0};
   Window window_{};
   std::optional<Variances> previous_{};
@@ -219,13 +184,11 @@ Scene perfectly_started(const Scene& scene) {
 
 }  // namespace
 
-std::string_view name(ErrorSource source) { return kSourceNames[static_cast<std::size_t>(source)]; }
-
 ErrorTrack error_track(const Scene& scene, double step_s) {
   const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
   return {scene.trajectory,
           scene.duration_s,
-          {std::min(step_s, step_limit_s(scene.imu)), TruthModel::needs_parameters(scene.imu),
+          {std::min(step_s, step_limit_s(scene.imu)), !parameter_moments(scene.imu).empty(),
            noise.tau_a_s, noise.tau_g_s}};
 }
 

@@ -20,21 +20,13 @@ ErrorMatrix without_biases(ErrorMatrix P) {
 
 }  // namespace
 
-Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors) {
-  Eigen::Matrix<double, 6, 1> variance;
-  variance.head<3>() =
-      errors.position_sigma_n_m.cwiseAbs2() + errors.correlated_sigma_n_m.cwiseAbs2();
-  variance.tail<3>() = errors.velocity_sigma_n_mps.cwiseAbs2();
-  return variance;
-}
-
 SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
     : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
       P_(initial_covariance(start_of(scene), initial_sigma(scene), scene.filter.imu,
                             scene.filter.biases)),
-      truth_(std::in_place, scene, without_biases(P_), noise_, by_source) {
+      truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
   const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
-  if (fixes_as_white && truth_->is_known_to(P_, noise_, fix_variance(scene.gnss.errors))) {
+  if (fixes_as_white && truth_->is_known_to(P_, fix_variance(scene.gnss.errors))) {
     truth_.reset();
   }
 }
@@ -44,14 +36,19 @@ void SceneCovariance::propagate(const Leg& leg) {
   if (truth_) truth_->propagate(leg);
 }
 
-void SceneCovariance::update(ScalarGain& gain) {
-  if (truth_) {
-    const ErrorVector cross = P_ * gain.h;
-    gain.K = cross / (gain.h.dot(cross) + 1.0);
-    truth_->update(gain);
+void SceneCovariance::update(const FixRows& fix) {
+  FixGains<1> gains = FixGains<1>::Zero();
+  for (int row = 0; row < fix.H.rows(); ++row) {
+    const ErrorVector h = fix.H.row(row).transpose();
+    const ErrorVector cross = P_ * h;
+    const ErrorVector K = cross / (h.dot(cross) + 1.0);
+    // A row sees what the rows before it have made of the innovations.
+    gains -= K * (h.transpose() * gains).eval();
+    gains.col(row) += K;
+    ErrorVector none = ErrorVector::Zero();
+    scalar_update(P_, none, h, 0.0);
   }
-  ErrorVector none = ErrorVector::Zero();
-  scalar_update(P_, none, gain.h, 0.0);
+  if (truth_) truth_->update(fix, gains);
 }
 
 }  // namespace leeway::sim

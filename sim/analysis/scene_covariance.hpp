@@ -10,10 +10,6 @@
 
 namespace leeway::sim {
 
-/// Variances of a fix by axis, as the receiver reports them: position north, east, down, then
-/// velocity.
-Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors);
-
 class SceneCovariance {
  public:
   /// At the scene's start. @param by_source  keeps the sources apart, for budget()
@@ -21,8 +17,8 @@ class SceneCovariance {
 
   void propagate(const Leg& leg);
 
-  /// Sets the gain to the filter's and applies it.
-  void update(ScalarGain& gain);
+  /// Takes the fix into both with the filter's gains.
+  void update(const FixRows& fix);
 
   const ErrorMatrix& claimed() const { return P_; }
   ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
@@ -33,7 +29,7 @@ class SceneCovariance {
  private:
   ProcessNoise noise_;
   ErrorMatrix P_;
-  std::optional<TruthModel> truth_;  // none: the filter knows all there is, P is the truth
+  std::optional<TruthModel<1>> truth_;  // none: the filter knows all there is, P is the truth
 };
 
 }  // namespace leeway::sim

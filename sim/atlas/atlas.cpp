@@ -19,25 +19,13 @@ void require_known(const std::string& key) {
   throw Error("atlas: no scene '" + key + "': " + did_you_mean(key, known));
 }
 
-std::vector<AtlasScene> all_scenes() {
-  std::vector<AtlasScene> scenes = estimator_scenes();
-  for (AtlasScene& scene : mechanization_scenes()) scenes.push_back(std::move(scene));
+std::vector<AtlasScene> in_order(std::vector<AtlasScene> scenes) {
+  std::sort(scenes.begin(), scenes.end(),
+            [](const AtlasScene& a, const AtlasScene& b) { return a.place < b.place; });
   return scenes;
 }
 
 }  // namespace
-
-std::string_view name(AtlasVerdict verdict) {
-  constexpr std::array<std::string_view, 3> kNames{"survives", "degrades", "fails"};
-  return kNames[static_cast<std::size_t>(verdict)];
-}
-
-std::string_view name(AtlasGroup group) {
-  constexpr std::array<std::string_view, kAtlasGroups> kNames{
-      "Navigator", "Ekf",       "kernels, double", "kernels, float", "invariant EKF",
-      "reset",     "strapdown", "input",           "not offered"};
-  return kNames[static_cast<std::size_t>(group)];
-}
 
 AtlasVerdict verdict_of(const AtlasLimits& limits, double figure) {
   // Not a number is in no range.
@@ -51,7 +39,7 @@ bool fails_silently(const AtlasLimits& limits, const AtlasCell& cell) {
 }
 
 const std::vector<AtlasScene>& atlas_scenes() {
-  static const std::vector<AtlasScene> kScenes = all_scenes();
+  static const std::vector<AtlasScene> kScenes = in_order(scenes::all());
   return kScenes;
 }
 

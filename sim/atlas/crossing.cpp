@@ -22,10 +22,7 @@ std::vector<ImuIncrement> crossing_increments(const Scene& scene) {
 }
 
 double position_rms_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  ErrorSums sums;
-  replay(filter, trial,
-         [&](const Estimate& truth, const WatchedFilter& now) { sums.add(truth, now); });
-  return sums.position_rms_m();
+  return errors_after(filter, trial, 0.0).position_rms_m();
 }
 
 }  // namespace

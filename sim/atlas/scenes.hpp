@@ -1,17 +1,16 @@
 /// @file
-/// The scenes of the atlas, one function in one file each.
+/// The scenes of the atlas. A file of estimators/ (what breaks filters) or mechanizations/ (what
+/// breaks strapdowns, clocks and sensors) defines the function of its name here, such as
+/// `AtlasScene parked_rtk()`; sim/atlas/CMakeLists.txt lists them.
 #pragma once
 
 #include <vector>
 
 #include "leeway/sim/atlas/atlas.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 
-/// What breaks estimators.
-std::vector<AtlasScene> estimator_scenes();
+/// The scene of every file, in no order.
+std::vector<AtlasScene> all();
 
-/// What breaks mechanizations, clocks and sensors.
-std::vector<AtlasScene> mechanization_scenes();
-
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -7,16 +7,9 @@
 namespace leeway::sim {
 
 Scene town_drive(double duration_s) {
-  Scene scene;
-  scene.name = "town drive";
-  scene.trajectory = square_loop({.straight_s = 10.0, .duration_s = duration_s});
-  scene.duration_s = duration_s;
-  scene.imu_rate_hz = 100.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 3.0};
-  return scene;
+  return car_grade_scene(
+      "town drive", square_loop({.straight_s = 10.0, .duration_s = duration_s}), duration_s, 100.0,
+      {.tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 3.0});
 }
 
 std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoil& spoil) {
@@ -25,13 +18,8 @@ std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoi
 }
 
 Score late_horizontal_rms_m(const Scene& scene, double last_s) {
-  const Time from = time_from_seconds(scene.duration_s - last_s);
-  return [from](WatchedFilter& filter, const RecordedTrial& trial) {
-    ErrorSums sums;
-    replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
-      if (truth.nav.time > from) sums.add(truth, now);
-    });
-    return sums.horizontal_rms_m();
+  return [from_s = scene.duration_s - last_s](WatchedFilter& filter, const RecordedTrial& trial) {
+    return errors_after(filter, trial, from_s).horizontal_rms_m();
   };
 }
 

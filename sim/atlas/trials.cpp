@@ -11,6 +11,7 @@
 #include "leeway/ekf/ekf_config.hpp"
 #include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "sim/trials/player.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -73,14 +74,13 @@ std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n) {
 }
 
 void replay(WatchedFilter& filter, const RecordedTrial& trial, const BeforeFix& before_fix) {
-  auto next = trial.fixes.begin();
-  for (std::size_t k = 0; k < trial.imu.size(); ++k) {
-    filter.predict(trial.imu[k]);
-    if (next == trial.fixes.end() || k != next->at) continue;
-    if (before_fix && next->truth) before_fix(*next->truth, filter);
-    filter.update(next->fix);
-    ++next;
-  }
+  play(
+      trial.imu.size(), 1, trial.fixes, [&](std::size_t k) { filter.predict(trial.imu[k]); },
+      [&](const RecordedTrial::Fix& fix) {
+        if (before_fix && fix.truth) before_fix(*fix.truth, filter);
+        filter.update(fix.fix);
+      },
+      [](const RecordedTrial::Fix&) {});
 }
 
 std::vector<AtlasCell> scored(const std::vector<AtlasColumn>& columns, const EkfConfig& believed,

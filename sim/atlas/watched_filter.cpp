@@ -143,7 +143,7 @@ std::unique_ptr<WatchedFilter> watched(const Navigator& navigator) {
 
 AtlasColumn column_of(const Variant& variant) {
   // Of "strapdown covariance" the second word.
-  const std::string both = name(variant, 1.0);
+  const std::string both = variant_name(variant, 1.0);
   return {group_of(variant), both.substr(both.find(' ') + 1),
           [variant](const EkfConfig& config, const TrialStart& start) {
             return visit_variant_filter(variant, config, start,

@@ -70,24 +70,15 @@ void add_repeat_option(CLI::App& app, int& repeat) {
       ->capture_default_str();
 }
 
-CLI::Option* add_range_option(CLI::App& app, std::string& range) {
-  std::vector<std::string> ends;
-  for (const RangeEnd end : kRangeEnds) ends.emplace_back(name(end));
-  return app
-      .add_option("--range", range,
-                  "where in the range of a Table 1 class: its ends, or the geometric mean")
-      ->check(CLI::IsMember(ends))
-      ->capture_default_str();
+void note_spelling(const std::string& word, std::string_view name) {
+  if (word != name) fmt::print(stderr, "leeway: note: {} is now written {}\n", word, name);
 }
 
-bool is_imu_class(const std::string& imu) {
-  return imu == kMems || std::any_of(kImuClasses.begin(), kImuClasses.end(),
-                                     [&imu](ImuClass c) { return name(c) == imu; });
-}
+bool is_imu_class(const std::string& imu) { return imu == kMems || from_name<ImuClass>(imu); }
 
 void add_imu_options(CLI::App& app, ImuChoice& choice) {
-  std::vector<std::string> names{std::string(kMems)};
-  for (const ImuClass c : kImuClasses) names.emplace_back(name(c));
+  std::vector<std::string> names(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
+  names.emplace(names.begin(), kMems);
   CLI::Option* by_class =
       app.add_option("--imu-class", choice.name,
                      "IMU error model: a car-grade MEMS part, or a class of the source paper's "
@@ -118,8 +109,8 @@ NamedImu imu_of(const ImuChoice& choice) {
     return {std::string(part.name), sim::imu_model(part)};
   }
   if (choice.name == kMems) return {choice.name, automotive_mems_model()};
-  return {choice.name + "/" + choice.range,
-          imu_class_model(imu_class_from_name(choice.name), range_end_from_name(choice.range))};
+  const ImuClass imu = from_name<ImuClass>(choice.name).value();
+  return {fmt::format("{}/{}", name(imu), name(choice.range)), imu_class_model(imu, choice.range)};
 }
 
 }  // namespace leeway::cli

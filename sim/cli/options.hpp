@@ -2,12 +2,19 @@
 /// Options that more than one command has.
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
+#include "leeway/earth/names.hpp"
+#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway::cli {
@@ -28,18 +35,45 @@ void add_threads_option(CLI::App& app, int& threads, const std::string& of_what 
 /// --repeat, of commands that measure time.
 void add_repeat_option(CLI::App& app, int& repeat);
 
+/// Says on stderr that a word is an old spelling of a name, if it is one.
+void note_spelling(const std::string& word, std::string_view name);
+
+/// Takes a word for the enumerator that it names, one of the first `count`.
+template <NamedEnum Enum>
+CLI::Validator named(std::size_t count = kAll<Enum>.size()) {
+  const auto words = std::span(kNames<Enum>).first(count);
+  const std::string accepted = fmt::format("{{{}}}", fmt::join(words, ","));
+  const auto parse = [count, accepted](std::string& word) {
+    const std::optional<Enum> value = from_name<Enum>(word);
+    const auto index = static_cast<std::size_t>(value.value_or(Enum{}));
+    if (!value || index >= count) return fmt::format("{} not in {}", word, accepted);
+    note_spelling(word, name(*value));
+    word = std::to_string(index);  // as CLI11 reads an enum
+    return std::string();
+  };
+  return {parse, accepted};
+}
+
 /// Which IMU error model: a class with its range end, a part of the catalogue, or a file.
 struct ImuChoice {
   std::string name{"automotive-mems"};
-  std::string range{"mid"};
+  RangeEnd range{RangeEnd::kMid};
   std::string part{};
   std::filesystem::path model_file{};
 };
 
 void add_imu_options(CLI::App& app, ImuChoice& choice);
 
-/// --range alone.
-CLI::Option* add_range_option(CLI::App& app, std::string& range);
+/// --range alone. @param range  a RangeEnd, or an optional one
+template <class Value>
+CLI::Option* add_range_option(CLI::App& app, Value& range) {
+  return app
+      .add_option(
+          "--range", range,
+          "where in the range of a Table 1 class: its ends, or the geometric mean (default: "
+          "mid)")
+      ->transform(named<RangeEnd>());
+}
 
 /// Whether the name is of automotive-mems or a Table 1 class.
 bool is_imu_class(const std::string& name);

@@ -16,19 +16,12 @@
 namespace leeway::cli {
 namespace {
 
-template <class Values>
-std::vector<std::string> names_of(const Values& values) {
-  std::vector<std::string> names;
-  for (const auto value : values) names.emplace_back(name(value));
-  return names;
-}
-
 /// A class, which --range is about, or a part of the catalogue.
 NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
   ImuChoice imu;
   if (is_imu_class(wanted)) {
     imu.name = wanted;
-    if (!choice.range.empty()) imu.range = choice.range;
+    imu.range = choice.range.value_or(imu.range);
     return imu_of(imu);
   }
   imu.part = wanted;
@@ -36,24 +29,18 @@ NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
     return imu_of(imu);
   } catch (const Error& error) {
     throw Error(fmt::format("--imu {}: no class (automotive-mems, {}) and no part: {}", wanted,
-                            fmt::join(names_of(kImuClasses), ", "), error.what()));
+                            fmt::join(kNames<ImuClass>, ", "), error.what()));
   }
 }
 
-sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, const std::string& bias) {
-  if (bias.empty()) {
-    set_imu(scene, imu.name, imu.model);
-  } else {
-    set_imu(scene, imu.name, with_bias_model(imu.model, sim::bias_model_from_name(bias)));
-  }
+sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, std::optional<sim::BiasModel> bias) {
+  set_imu(scene, imu.name, bias ? with_bias_model(imu.model, *bias) : imu.model);
   return scene;
 }
 
 sim::Scene changed_scene(const SceneChoice& choice) {
   sim::Scene scene = scene_from_file(choice.file, choice.at_s);
-  if (!choice.metric.empty()) {
-    scene.limit.metric = horizontal_metric_from_name(choice.metric);
-  }
+  scene.limit.metric = choice.metric.value_or(scene.limit.metric);
   if (!choice.filter.empty()) sim::read_filter_file(choice.filter, scene);
   if (!choice.limits_m.empty()) scene.limit.limit_m = choice.limits_m.front();
   if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
@@ -103,13 +90,13 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--bias", choice.bias,
                  "what the biases of a Table 1 class do after turn-on: stay, or wander with a "
                  "correlation time of an hour")
-      ->check(CLI::IsMember(names_of(sim::kBiasModels)));
+      ->transform(named<sim::BiasModel>());
   app.add_option("--filter", choice.filter,
                  "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
                  "--write made")
       ->type_name("FILE.toml");
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
-      ->check(CLI::IsMember(names_of(kHorizontalMetrics)));
+      ->transform(named<HorizontalMetric>());
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
       ->check(positive())
       ->type_name("M")
@@ -130,15 +117,16 @@ void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::
 }
 
 std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
-  if (choice.imus.empty() && !choice.range.empty()) {
-    throw Error("--range " + choice.range + " is of a Table 1 class: name it with --imu");
+  if (choice.imus.empty() && choice.range) {
+    throw Error(
+        fmt::format("--range {} is of a Table 1 class: name it with --imu", name(*choice.range)));
   }
   const sim::Scene base = changed_scene(choice);
   std::vector<sim::Scene> scenes;
   for (const std::string& imu : choice.imus) {
     scenes.push_back(with_imu(base, imu_named(imu, choice), choice.bias));
   }
-  if (scenes.empty() && choice.bias.empty()) scenes.push_back(base);
+  if (scenes.empty() && !choice.bias) scenes.push_back(base);
   if (scenes.empty()) scenes.push_back(with_imu(base, {base.imu_name, base.imu}, choice.bias));
   for (const sim::Scene& scene : scenes) validate(scene);
   return scenes;

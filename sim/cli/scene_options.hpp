@@ -8,19 +8,22 @@
 #include <string>
 #include <vector>
 
+#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/scene.hpp"
+#include "leeway/sim/sensors/bias_model.hpp"
 #include "sim/cli/json.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 
 struct SceneChoice {
   std::filesystem::path file{};
-  std::vector<std::string> imus{};  ///< empty: the scene's
-  std::string range{};              ///< of those that are Table 1 classes; empty: mid
-  std::string bias{};               ///< empty: as the scene or the model has it
-  std::string metric{};             ///< empty: the scene's
-  std::vector<double> limits_m{};   ///< empty: the scene's
-  std::filesystem::path filter{};   ///< how the filter runs; empty: as the scene has it
+  std::vector<std::string> imus{};           ///< empty: the scene's
+  std::optional<RangeEnd> range{};           ///< of those that are Table 1 classes; absent: mid
+  std::optional<sim::BiasModel> bias{};      ///< absent: as the scene or the model has it
+  std::optional<HorizontalMetric> metric{};  ///< absent: the scene's
+  std::vector<double> limits_m{};            ///< empty: the scene's
+  std::filesystem::path filter{};            ///< how the filter runs; empty: as the scene has it
   std::optional<double> at_s{};
   std::optional<double> interval_s{};
   std::optional<int> trials{};

@@ -11,12 +11,8 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/compare/pareto.hpp"
-#include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "sim/compare/variant_cost.hpp"
-#include "sim/compare/variant_run.hpp"
-#include "sim/trials/campaign_sums.hpp"
-#include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -25,88 +21,29 @@ constexpr std::array kDividers{1, 2, 5};
 constexpr std::size_t kSurvivors = 3;
 constexpr double kSurvives = 1.01;  // of the default's error
 
-/// A trial at every IMU rate, made when it is first asked for.
-class Recordings {
- public:
-  Recordings(const TrialPlan& plan, std::uint64_t seed) : full_(record_trial(plan, seed)) {}
-
-  const RecordedTrial& at(int divider) {
-    if (divider == 1) return full_;
-    for (const auto& [n, slower] : slower_) {
-      if (n == divider) return slower;
-    }
-    return slower_.emplace_back(divider, at_lower_rate(full_, divider)).second;
-  }
-
- private:
-  RecordedTrial full_;
-  std::vector<std::pair<int, RecordedTrial>> slower_{};
-};
-
-/// One variant in one trial.
-struct ContenderRun {
-  TrialScore score{};
-  std::vector<double> horizontal_m{};
-};
-
-ContenderRun scored_run(const Variant& variant, const EkfConfig& believed,
-                        const RecordedTrial& trial, std::uint64_t seed) {
-  ContenderRun run;
-  run.score.seed = seed;
-  const auto score = [&run](const Estimate& truth, const Estimate& estimate, const ErrorMatrix* P) {
-    if (!run.score.finite) return;
-    score_epoch(run.score, truth, estimate, P);
-    if (!run.score.finite) return;
-    run.horizontal_m.push_back(position_error_n_m(truth, estimate).head<2>().norm());
-  };
-  make_variant_run(variant, believed, trial.start)->replay(trial, score);
-  if (!run.score.finite) run.score.diverged = true;
-  return run;
-}
-
-Accuracy summary(const Variant& variant, const std::vector<ContenderRun>& runs) {
-  CampaignSums sums;
-  std::vector<double> horizontal_m;
-  for (const ContenderRun& run : runs) {
-    sums.add(run.score);
-    if (!run.score.finite) continue;
-    horizontal_m.insert(horizontal_m.end(), run.horizontal_m.begin(), run.horizontal_m.end());
-  }
-  return {result_of(sums), r95_of(std::move(horizontal_m)), variant.estimator != Estimator::kReset};
+std::vector<FilterCase> cases_of(const TrialPlan& plan, const std::vector<Variant>& variants) {
+  std::vector<FilterCase> cases;
+  for (const Variant& variant : variants) cases.push_back({&plan, variant, plan.scene().filter});
+  return cases;
 }
 
 std::vector<Accuracy> accuracy_in(const TrialPlan& plan, const std::vector<Variant>& variants,
                                   int threads, const std::function<void(double)>& progress) {
-  const auto trials = static_cast<std::size_t>(plan.scene().trials);
-  std::vector<std::vector<ContenderRun>> runs(variants.size(), std::vector<ContenderRun>(trials));
-  parallel_for(
-      trials,
-      [&](std::size_t k) {
-        const std::uint64_t seed = plan.scene().first_seed + k;
-        Recordings recordings(plan, seed);
-        for (std::size_t v = 0; v < variants.size(); ++v) {
-          runs[v][k] = scored_run(variants[v], plan.scene().filter,
-                                  recordings.at(variants[v].imu_divider), seed);
-        }
-      },
-      [&](std::size_t done) {
-        if (progress) progress(static_cast<double>(done) / static_cast<double>(trials));
-      },
-      threads);
+  const auto runs = run_cases(cases_of(plan, variants), threads, progress);
   std::vector<Accuracy> result;
-  for (std::size_t v = 0; v < variants.size(); ++v) result.push_back(summary(variants[v], runs[v]));
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    result.push_back({figures_of(runs[v]), r95_of(radial_errors_m(runs[v])),
+                      variants[v].estimator != Estimator::kReset});
+  }
   return result;
 }
 
 std::vector<Cost> costs_of(const TrialPlan& plan, const std::vector<Variant>& variants, int rounds,
                            const std::function<void(double)>& progress) {
-  Recordings recordings(plan, plan.scene().first_seed);
+  GivenTrials given(plan.scene().first_seed);
   std::vector<TimedRun> runs;
-  for (const Variant& variant : variants) {
-    runs.emplace_back([&plan, &recordings, variant](std::size_t place) {
-      const RecordedTrial& trial = recordings.at(variant.imu_divider);
-      return timed_ns_per_s(variant, plan.scene().filter, trial.start, trial, place);
-    });
+  for (const FilterCase& one : cases_of(plan, variants)) {
+    runs.emplace_back([&given, one] { return timed_ns_per_s(one, given); });
   }
   return interleaved_costs(runs, rounds, progress);
 }
@@ -124,8 +61,9 @@ std::vector<int> fitting_dividers(const TrialPlan& plan) {
 std::vector<Variant> survivors(const std::vector<Variant>& list,
                                const std::vector<Compared>& compared, double imu_rate_hz) {
   const auto found = [&](const Variant& variant) -> const Compared& {
-    return *std::find_if(compared.begin(), compared.end(),
-                         [&](const Compared& c) { return c.name == name(variant, imu_rate_hz); });
+    return *std::find_if(compared.begin(), compared.end(), [&](const Compared& c) {
+      return c.name == variant_name(variant, imu_rate_hz);
+    });
   };
   const double limit_m = kSurvives * found(Variant{}).accuracy.figures.rms_horizontal_m;
   std::vector<const Compared*> sorted;
@@ -155,7 +93,7 @@ std::vector<Variant> combinations(const std::vector<Compared>& compared,
   for (const Variant& s : survivors(strapdown_variants(dividers), compared, imu_rate_hz)) {
     for (const Variant& c : covariances) {
       const Variant both = combined(s, c);
-      if (names.insert(name(both, imu_rate_hz)).second) result.push_back(both);
+      if (names.insert(variant_name(both, imu_rate_hz)).second) result.push_back(both);
     }
   }
   return result;
@@ -167,7 +105,7 @@ std::vector<Compared> compared_of(const std::vector<Variant>& variants,
   std::vector<Compared> result;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     result.push_back(
-        {variants[v], name(variants[v], imu_rate_hz), costs[v], accuracies[v], {}, false});
+        {variants[v], variant_name(variants[v], imu_rate_hz), costs[v], accuracies[v], {}, false});
   }
   return result;
 }
@@ -214,12 +152,6 @@ double r95_of(std::vector<double> values) {
       static_cast<std::ptrdiff_t>(std::ceil(0.95 * static_cast<double>(values.size())) - 1.0);
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
-}
-
-std::string_view name(Consistency consistency) {
-  constexpr std::array<std::string_view, 6> kNames{"no claim",    "consistent", "optimistic",
-                                                   "pessimistic", "diverged",   "not finite"};
-  return kNames[static_cast<std::size_t>(consistency)];
 }
 
 Consistency consistency_of(const Accuracy& accuracy) {

@@ -1,29 +1,23 @@
 /// @file
-/// What a filter costs: processor time of whole replays.
+/// What a filter costs: processor time of whole runs.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <vector>
 
 #include "leeway/sim/compare/compare.hpp"
-#include "sim/compare/variant_run.hpp"
+#include "sim/compare/filter_case.hpp"
 
 namespace leeway::sim {
 
-/// Of one whole replay by the variant's filter, per second of IMU data. Where in a page of memory
-/// the filter lies, beside where its stack lies, can double it: processors take two addresses that
-/// agree in their last 12 bits for one.
-/// @param place  how far the stack is beyond the filter in their pages, in cache lines: alike for
-///               what is compared, and others in other rounds
-double timed_ns_per_s(const Variant& variant, const EkfConfig& believed, const TrialStart& start,
-                      const RecordedTrial& trial, std::size_t place);
+/// Of one run of the case over its trial, per second of IMU data.
+double timed_ns_per_s(const FilterCase& one, GivenTrials& given);
 
 /// Median, least and most. @pre not empty
 Cost cost_of(std::vector<double> ns_per_s);
 
-/// A timed run at a place: nanoseconds per second of IMU data.
-using TimedRun = std::function<double(std::size_t place)>;
+/// A timed run: nanoseconds per second of IMU data.
+using TimedRun = std::function<double()>;
 
 /// The costs of all, in their order, each round all of them in turn: what slows the machine for a
 /// while slows all alike. @pre rounds >= 1

@@ -1,16 +1,17 @@
 #include "sim/compare/variant_run.hpp"
 
+#include <ctime>
 #include <optional>
-#include <utility>
 
 #include "leeway/ekf/ekf_config.hpp"
 #include "sim/compare/variant_filter.hpp"
+#include "sim/trials/player.hpp"
 
 namespace leeway::sim {
 namespace {
 
 template <class Filter>
-void observe(const Filter& filter, const Estimate& truth, const VariantRun::Observer& observer) {
+void observe(const Filter& filter, const Estimate& truth, const ScoreObserver& observer) {
   if constexpr (requires { filter.covariance(); }) {
     const ErrorMatrix P = filter.covariance();
     observer(truth, filter.estimate(), &P);
@@ -19,44 +20,32 @@ void observe(const Filter& filter, const Estimate& truth, const VariantRun::Obse
   }
 }
 
+/// A fix that arrives late acts at its own time: the filter goes back there and comes again.
 template <class Filter>
-class Runner final : public VariantRun {
- public:
-  explicit Runner(Filter filter) : filter_(std::move(filter)) {}
-
-  void replay(const RecordedTrial& trial, const Observer& observer) override {
-    auto next = trial.fixes.begin();
-    for (std::size_t k = 0; k < trial.imu.size(); ++k) {
-      filter_.predict(trial.imu[k]);
-      if (next == trial.fixes.end()) continue;
-      if (k == next->at && k < next->arrives) when_valid_ = filter_;
-      if (k != next->arrives) continue;
-      if (observer && next->truth) observe(filter_, *next->truth, observer);
-      use(*next, trial);
-      ++next;
-    }
-  }
-
- private:
-  /// A fix that arrives late acts at its own time: the filter goes back there and comes again.
-  void use(const RecordedTrial::Fix& fix, const RecordedTrial& trial) {
-    if (fix.arrives > fix.at) filter_ = *when_valid_;
-    filter_.update(fix.fix);
-    for (std::size_t k = fix.at + 1; k <= fix.arrives; ++k) filter_.predict(trial.imu[k]);
-  }
-
-  Filter filter_;
-  std::optional<Filter> when_valid_{};
-};
+void run(Filter& filter, const RecordedTrial& trial, const ScoreObserver& observer) {
+  std::optional<Filter> when_valid;
+  play(
+      trial.imu.size(), 1, trial.fixes, [&](std::size_t k) { filter.predict(trial.imu[k]); },
+      [&](const RecordedTrial::Fix& fix) {
+        if (fix.at < fix.arrives) when_valid = filter;
+      },
+      [&](const RecordedTrial::Fix& fix) {
+        if (observer && fix.truth) observe(filter, *fix.truth, observer);
+        if (fix.at < fix.arrives) filter = *when_valid;
+        filter.update(fix.fix);
+        for (std::size_t k = fix.at + 1; k <= fix.arrives; ++k) filter.predict(trial.imu[k]);
+      });
+}
 
 }  // namespace
 
-std::unique_ptr<VariantRun> make_variant_run(const Variant& variant, const EkfConfig& believed,
-                                             const TrialStart& start) {
-  return visit_variant_filter(
-      variant, believed, start, [](auto filter) -> std::unique_ptr<VariantRun> {
-        return std::make_unique<Runner<decltype(filter)>>(std::move(filter));
-      });
+double run_variant(const Variant& variant, const EkfConfig& believed, const TrialStart& start,
+                   const RecordedTrial& trial, const ScoreObserver& observer) {
+  return visit_variant_filter(variant, believed, start, [&](auto filter) {
+    const std::clock_t begin = std::clock();
+    run(filter, trial, observer);
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  });
 }
 
 }  // namespace leeway::sim

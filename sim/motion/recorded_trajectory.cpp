@@ -12,6 +12,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/logs/truth_log.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/motion/smoothing_spline.hpp"
 
 namespace leeway::sim {
@@ -25,12 +26,6 @@ constexpr double kFarthestM = 7e6;
 constexpr double kSteepestRad = 80.0 * kRadPerDeg;
 
 using Samples = SmoothingSpline::Samples;
-
-void require(double value, const char* field, double low, double high) {
-  if (value >= low && value <= high) return;
-  throw Error(fmt::format("recorded trajectory: {} is {:.9g}, must be {:.9g} to {:.9g}", field,
-                          value, low, high));
-}
 
 /// The rows of a log, from time 0.
 struct Recording {
@@ -188,9 +183,9 @@ Samples angles(const Recording& recording, const TangentPlane& plane,
 }  // namespace
 
 Trajectory recorded_trajectory(const RecordedParameters& p) {
-  require(p.smoothing_s, "smoothing_s", 0.01, 100.0);
-  require(p.max_gap_s, "max_gap_s", 0.01, 1e4);
-  require(p.min_speed_mps, "min_speed_mps", 0.01, 100.0);
+  require("recorded trajectory", "smoothing_s", p.smoothing_s, between(0.01, 100.0));
+  require("recorded trajectory", "max_gap_s", p.max_gap_s, between(0.01, 1e4));
+  require("recorded trajectory", "min_speed_mps", p.min_speed_mps, between(0.01, 100.0));
   const Recording recording = read(p);
   Trajectory trajectory;
   trajectory.name = p.file.filename().string();

@@ -3,35 +3,20 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
-#include <sstream>
-#include <string>
 
-#include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kNoLimit = std::numeric_limits<double>::lowest();
-constexpr double kPositive = std::numeric_limits<double>::min();
-
-void require(const std::string& field, double value, double least) {
-  if (std::isfinite(value) && value >= least) return;
-  std::ostringstream message;
-  message << field << " is " << value << ", must be finite";
-  if (least == 0.0) message << " and >= 0";
-  if (least > 0.0) message << " and > 0";
-  throw Error(message.str());
-}
-
-Trajectory make(const std::string& name, const Geodetic& origin, double duration_s) {
-  require(name + ": origin.lat_rad", origin.lat_rad, kNoLimit);
-  require(name + ": origin.lon_rad", origin.lon_rad, kNoLimit);
-  require(name + ": origin.height_m", origin.height_m, kNoLimit);
-  require(name + ": duration_s", duration_s, kPositive);
+Trajectory make(const char* name, const Geodetic& origin, double duration_s) {
+  require(name, "origin.lat_rad", origin.lat_rad, kFinite);
+  require(name, "origin.lon_rad", origin.lon_rad, kFinite);
+  require(name, "origin.height_m", origin.height_m, kFinite);
+  require(name, "duration_s", duration_s, kPositive);
   Trajectory trajectory;
   trajectory.name = name;
   trajectory.plane = TangentPlane(origin);
@@ -175,9 +160,9 @@ Trajectory static_trajectory(const StaticParameters& parameters) {
   m.roll_rad = parameters.attitude.roll_rad;
   m.pitch_rad = parameters.attitude.pitch_rad;
   m.yaw_rad = parameters.attitude.yaw_rad;
-  require("static: attitude.roll_rad", m.roll_rad.value, kNoLimit);
-  require("static: attitude.pitch_rad", m.pitch_rad.value, kNoLimit);
-  require("static: attitude.yaw_rad", m.yaw_rad.value, kNoLimit);
+  require("static", "attitude.roll_rad", m.roll_rad.value, kFinite);
+  require("static", "attitude.pitch_rad", m.pitch_rad.value, kFinite);
+  require("static", "attitude.yaw_rad", m.yaw_rad.value, kFinite);
   trajectory.motion = [m](double) { return m; };
   trajectory.period_s = 60.0;  // any would do
   return trajectory;
@@ -185,9 +170,9 @@ Trajectory static_trajectory(const StaticParameters& parameters) {
 
 Trajectory straight(const StraightParameters& p) {
   Trajectory trajectory = make("straight", p.origin, p.duration_s);
-  require("straight: ground_speed_mps", p.ground_speed_mps, 0.0);
-  require("straight: climb_rate_mps", p.climb_rate_mps, kNoLimit);
-  require("straight: heading_rad", p.heading_rad, kNoLimit);
+  require("straight", "ground_speed_mps", p.ground_speed_mps, kNotNegative);
+  require("straight", "climb_rate_mps", p.climb_rate_mps, kFinite);
+  require("straight", "heading_rad", p.heading_rad, kFinite);
   trajectory.motion = [p](double t_s) {
     const Jet t = time_jet(t_s);
     LocalMotion m;
@@ -203,8 +188,8 @@ Trajectory straight(const StraightParameters& p) {
 
 Trajectory circle(const CircleParameters& p) {
   Trajectory trajectory = make("circle", p.origin, p.duration_s);
-  require("circle: radius_m", p.radius_m, kPositive);
-  require("circle: speed_mps", p.speed_mps, 0.0);
+  require("circle", "radius_m", p.radius_m, kPositive);
+  require("circle", "speed_mps", p.speed_mps, kNotNegative);
   trajectory.motion = [p](double t_s) { return circle_motion(p, t_s); };
   if (p.speed_mps > 0.0) trajectory.period_s = kTwoPi * p.radius_m / p.speed_mps;
   return trajectory;
@@ -212,9 +197,9 @@ Trajectory circle(const CircleParameters& p) {
 
 Trajectory square_loop(const SquareLoopParameters& p) {
   Trajectory trajectory = make("square loop", p.origin, p.duration_s);
-  require("square loop: speed_mps", p.speed_mps, 0.0);
-  require("square loop: straight_s", p.straight_s, 0.0);
-  require("square loop: turn_s", p.turn_s, kPositive);
+  require("square loop", "speed_mps", p.speed_mps, kNotNegative);
+  require("square loop", "straight_s", p.straight_s, kNotNegative);
+  require("square loop", "turn_s", p.turn_s, kPositive);
   trajectory.motion = [p](double t_s) { return square_loop_motion(p, t_s); };
   const double side_s = p.straight_s + p.turn_s;
   trajectory.period_s = 4.0 * side_s;
@@ -228,7 +213,7 @@ Trajectory square_loop(const SquareLoopParameters& p) {
 
 Trajectory car_drive(const CarDriveParameters& p) {
   Trajectory trajectory = make("car drive", p.origin, p.duration_s);
-  require("car drive: initial_rest_s", p.initial_rest_s, 0.0);
+  require("car drive", "initial_rest_s", p.initial_rest_s, kNotNegative);
   trajectory.motion = [p](double t_s) { return car_drive_motion(p, t_s); };
   trajectory.breaks_s = car_drive_breaks(p);
   return trajectory;

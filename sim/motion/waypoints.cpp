@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/motion/ellipsoid_path.hpp"
 #include "sim/motion/speed_profile.hpp"
 
 namespace leeway::sim {
 namespace {
 
-constexpr std::size_t kMostWaypoints = 2000;
+constexpr double kMostWaypoints = 2000.0;
 constexpr std::size_t kMostBreaks = 1'000'000;
 constexpr double kFarthestM = 7e6;
 constexpr double kSlowestMps = 0.01;
@@ -24,32 +24,28 @@ constexpr double kFastestMps = 1e4;
 constexpr double kShortestTurnS = 1.0;
 constexpr double kShortestBankedTurnS = 3.0;  // rolls in and out
 
-void require(double value, const std::string& field, double low, double high) {
-  if (value >= low && value <= high) return;
-  std::ostringstream message;
-  message << field << " is " << value << ", must be " << low << " to " << high;
-  throw Error(message.str());
-}
-
 void validate(const WaypointParameters& p) {
-  require(static_cast<double>(p.waypoints.size()), "waypoints: their number", 2.0,
-          static_cast<double>(kMostWaypoints));
-  require(p.acceleration_mps2, "waypoints: acceleration_mps2", 1e-3, 1e3);
-  require(p.lateral_acceleration_mps2, "waypoints: lateral_acceleration_mps2", 1e-3, 1e3);
-  if (p.turn_radius_m) require(*p.turn_radius_m, "waypoints: turn_radius_m", 0.1, 1e6);
-  if (p.duration_s) require(*p.duration_s, "waypoints: duration_s", 1e-3, 1e7);
+  require("waypoints", "their number", static_cast<double>(p.waypoints.size()),
+          between(2.0, kMostWaypoints));
+  require("waypoints", "acceleration_mps2", p.acceleration_mps2, between(1e-3, 1e3));
+  require("waypoints", "lateral_acceleration_mps2", p.lateral_acceleration_mps2,
+          between(1e-3, 1e3));
+  if (p.turn_radius_m) require("waypoints", "turn_radius_m", *p.turn_radius_m, between(0.1, 1e6));
+  if (p.duration_s) require("waypoints", "duration_s", *p.duration_s, between(1e-3, 1e7));
   const Eigen::Vector3d start_e_m = ecef_from_geodetic(p.waypoints.front().position);
   for (std::size_t k = 0; k < p.waypoints.size(); ++k) {
     const Waypoint& w = p.waypoints[k];
-    const std::string name = "waypoint " + std::to_string(k + 1) + ": ";
+    const std::string name = "waypoint " + std::to_string(k + 1);
     const bool may_rest = k + 1 == p.waypoints.size() && !p.loop;
-    require(w.position.lat_rad / kRadPerDeg, name + "latitude, deg,", -90.0, 90.0);
-    require(w.position.lon_rad / kRadPerDeg, name + "longitude, deg,", -360.0, 360.0);
-    require(w.position.height_m, name + "height_m", -1.2e4, 1e5);
-    require(w.speed_mps, name + "speed_mps", may_rest ? 0.0 : kSlowestMps, kFastestMps);
-    require(w.stop_s.value_or(0.0), name + "stop_s", 0.0, 1e6);
-    require((ecef_from_geodetic(w.position) - start_e_m).norm(),
-            name + "distance from the first, m,", 0.0, kFarthestM);
+    require(name.c_str(), "latitude, deg,", w.position.lat_rad / kRadPerDeg, between(-90.0, 90.0));
+    require(name.c_str(), "longitude, deg,", w.position.lon_rad / kRadPerDeg,
+            between(-360.0, 360.0));
+    require(name.c_str(), "height_m", w.position.height_m, between(-1.2e4, 1e5));
+    require(name.c_str(), "speed_mps", w.speed_mps,
+            between(may_rest ? 0.0 : kSlowestMps, kFastestMps));
+    require(name.c_str(), "stop_s", w.stop_s.value_or(0.0), between(0.0, 1e6));
+    require(name.c_str(), "distance from the first, m,",
+            (ecef_from_geodetic(w.position) - start_e_m).norm(), between(0.0, kFarthestM));
   }
 }
 

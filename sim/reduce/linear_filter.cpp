@@ -10,6 +10,8 @@
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
 #include "sim/analysis/scene_covariance.hpp"
+#include "sim/trials/player.hpp"
+#include "sim/trials/recorded_trial.hpp"
 #include "sim/trials/trial_score.hpp"
 
 namespace leeway::sim {
@@ -29,7 +31,7 @@ Eigen::Vector3d rate_in(const TruePath& path, std::size_t increment) {
 /// Position and velocity of an antenna at the end of an increment.
 Eigen::Matrix<double, 6, 1> antenna_e(const TruePath& path, std::size_t increment,
                                       const Eigen::Vector3d& lever_arm_b_m) {
-  const Estimate estimate = estimate_at(path.states[increment + 1]);
+  const Estimate estimate = estimate_at(path.at_end_of(increment));
   Eigen::Matrix<double, 6, 1> antenna;
   antenna << antenna_position_e(estimate, lever_arm_b_m),
       antenna_velocity_e(estimate, lever_arm_b_m, rate_in(path, increment));
@@ -42,8 +44,7 @@ class Pass {
   Pass(const TruePath& path, const FilterModel& model)
       : path_(path),
         model_(model),
-        fixes_(arriving_fixes(path.plan)),
-        weights_(fix_weights(path.plan, model.config.gnss_correlation_s)),
+        weight_(model.config.gnss_correlation_s),
         noise_(process_noise(model.config.imu, model.config.biases)),
         strapdown_(strapdown_function(model.config.strapdown)),
         state_{ErrorVector::Zero(),
@@ -53,11 +54,18 @@ class Pass {
                 model.config.covariance_interval_s}} {}
 
   LinearFilterRun run() {
+    using Fix = TrialPlan::Fix;
     const auto divider = static_cast<std::size_t>(model_.imu_divider);
-    for (std::size_t first = 0; next_ < fixes_.size(); first += divider) {
-      step(first, divider);
-      take_fix(first + divider - 1);
-    }
+    play(
+        path_.plan.increments().size(), divider, arriving_fixes(path_.plan),
+        [&](std::size_t k) { step(k + 1 - divider, divider); },
+        [&](const Fix& fix) {
+          if (model_.knows_latency) use(fix, fix.at);
+        },
+        [&](const Fix& fix) {
+          if (!model_.knows_latency) use(fix, fix.arrives);
+          if (fix.scored) score();
+        });
     return std::move(result_);
   }
 
@@ -118,31 +126,26 @@ class Pass {
     return stretch.dt_s * (difference - stretch.gravity_gradient_e * dr_e_m);
   }
 
-  void take_fix(std::size_t increment) {
-    const TrialPlan::Fix& fix = fixes_[next_];
-    const std::size_t used_at = model_.knows_latency ? fix.at : fix.arrives;
-    if (increment == used_at) {
-      if (fix.scored) without_fix_ = state_;
-      update(fix, increment);
-    }
-    if (increment != fix.arrives) return;
-    ++next_;
-    if (!fix.scored) return;
+  void score() {
     result_.epochs.push_back({without_fix_->mean, without_fix_->covariance.matrix(noise_)});
     without_fix_.reset();
   }
 
-  void update(const TrialPlan::Fix& fix, std::size_t increment) {
-    const double weight = weights_[next_];
-    const FixRows rows = fix_rows(path_, increment, model_.config.lever_arm_b_m, weight);
+  /// Takes the fix for valid at the end of an increment.
+  void use(const TrialPlan::Fix& fix, std::size_t increment) {
+    if (fix.scored) without_fix_ = state_;
+    const Time t = path_.at_end_of(fix.at).time;
+    const double weight = weight_.of(t);
+    weight_.fused(t);
+    const FixRows rows = path_.fix_rows(increment, model_.config.lever_arm_b_m, weight);
     state_.covariance.flush(noise_);
-    const FixGain gain = take(state_.covariance.kernel(), rows.H);
+    const FixGains<1> gain = take(state_.covariance.kernel(), rows.H);
     const ErrorMatrix P = state_.covariance.kernel().matrix();
     if (!std::isfinite(expected_nees(P, P))) result_.is_positive = false;
     const Eigen::Vector3d& lever = path_.plan.scene().gnss.errors.lever_arm_b_m;
-    const FixRows truth = fix_rows(path_, increment, lever, weight);
+    const FixRows truth = path_.fix_rows(increment, lever, weight);
     const Eigen::Matrix3d C_ne =
-        ned_to_ecef(geodetic_from_ecef(path_.states[increment + 1].r_e_m)).transpose();
+        ned_to_ecef(geodetic_from_ecef(path_.at_end_of(increment).r_e_m)).transpose();
     const Eigen::Matrix<double, 6, 1> missed_e =
         antenna_e(path_, fix.at, lever) - antenna_e(path_, increment, model_.config.lever_arm_b_m);
     Eigen::Matrix<double, 6, 1> missed;
@@ -153,10 +156,10 @@ class Pass {
   }
 
   /// The kernel takes the rows; the estimate is linear in what they measure.
-  static FixGain take(SymmetricKernel<Scalar>& kernel,
-                      const Eigen::Matrix<double, 6, kErrorStates>& H) {
+  static FixGains<1> take(SymmetricKernel<Scalar>& kernel,
+                          const Eigen::Matrix<double, 6, kErrorStates>& H) {
     const MeasurementRows rows = H;
-    FixGain gain;
+    FixGains<1> gain;
     for (int i = 0; i < 6; ++i) {
       SymmetricKernel<Scalar> probe = kernel;
       ErrorVector x_hat = ErrorVector::Zero();
@@ -170,14 +173,12 @@ class Pass {
 
   const TruePath& path_;
   const FilterModel& model_;
-  std::vector<TrialPlan::Fix> fixes_;
-  std::vector<double> weights_;
+  PositionWeight weight_;
   ProcessNoise noise_;
   StrapdownFunction strapdown_;
   ImuHistory history_{};
   State state_;
   std::optional<State> without_fix_{};  // what is scored when the fix arrives
-  std::size_t next_{0};                 // fix
   LinearFilterRun result_{};
 };
 
@@ -195,39 +196,10 @@ TruePath::TruePath(const TrialPlan& trial_plan, const StrapdownPolicy& full) : p
   }
 }
 
-std::vector<TrialPlan::Fix> arriving_fixes(const TrialPlan& plan) {
-  std::vector<TrialPlan::Fix> fixes;
-  for (const TrialPlan::Fix& fix : plan.fixes()) {
-    if (fix.arrives < plan.increments().size()) fixes.push_back(fix);
-  }
-  return fixes;
-}
-
-FixRows fix_rows(const TruePath& path, std::size_t increment, const Eigen::Vector3d& lever_arm_b_m,
-                 double weight) {
-  const NavState& nav = path.states[increment + 1];
-  const GnssFix fix{nav.time, GnssPosition{}, GnssVelocity{}};
-  const Measurement m =
-      gnss_measurement(fix, estimate_at(nav), lever_arm_b_m, rate_in(path, increment));
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).transpose();
-  FixRows rows;
-  rows.per_sigma = fix_variance(path.plan.scene().gnss.errors).cwiseSqrt().cwiseInverse();
-  rows.per_sigma.head<3>() *= weight;
-  rows.H << C_ne * m.H.topRows<3>(), C_ne * m.H.bottomRows<3>();
-  rows.H = rows.per_sigma.asDiagonal() * rows.H;
-  return rows;
-}
-
-std::vector<double> fix_weights(const TrialPlan& plan, double correlation_s) {
-  std::vector<double> weights;
-  std::optional<std::size_t> last;
-  for (const TrialPlan::Fix& fix : arriving_fixes(plan)) {
-    const double since_s =
-        last ? static_cast<double>(fix.at - *last) / plan.scene().imu_rate_hz : 0.0;
-    weights.push_back(last ? gnss_position_weight(since_s, correlation_s) : 1.0);
-    last = fix.at;
-  }
-  return weights;
+FixRows TruePath::fix_rows(std::size_t increment, const Eigen::Vector3d& lever_arm_b_m,
+                           double weight) const {
+  return sim::fix_rows(at_end_of(increment), rate_in(*this, increment), lever_arm_b_m,
+                       plan.scene().gnss.errors, weight);
 }
 
 LinearFilterRun run_linear_filter(const TruePath& path, const FilterModel& model) {

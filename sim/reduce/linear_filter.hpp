@@ -7,7 +7,7 @@
 
 #include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/trials/trial.hpp"
-#include "sim/reduce/paired_covariance.hpp"
+#include "sim/analysis/source_covariance.hpp"
 
 namespace leeway::sim {
 
@@ -16,29 +16,24 @@ struct TruePath {
   /// By the full model's strapdown on the true increments: errs by less than any term is worth.
   TruePath(const TrialPlan& plan, const StrapdownPolicy& full);
 
+  const NavState& at_end_of(std::size_t increment) const { return states[increment + 1]; }
+
+  /// The rows of a fix at the end of an increment. @param weight  of the position
+  FixRows fix_rows(std::size_t increment, const Eigen::Vector3d& lever_arm_b_m,
+                   double weight) const;
+
   const TrialPlan& plan;
   std::vector<NavState> states{};  ///< the start, then the end of every increment
 };
-
-/// Fixes that arrive within the scene, with what every model shares of them.
-std::vector<TrialPlan::Fix> arriving_fixes(const TrialPlan& plan);
-
-/// The rows of a fix at the end of an increment, by the lever arm.
-/// @param weight  of the position, by gnss_position_weight()
-FixRows fix_rows(const TruePath& path, std::size_t increment, const Eigen::Vector3d& lever_arm_b_m,
-                 double weight);
-
-/// Of each fix, by the correlation that the filter believes in.
-std::vector<double> fix_weights(const TrialPlan& plan, double correlation_s);
 
 struct LinearFilterRun {
   struct Epoch {
     ErrorVector mean{ErrorVector::Zero()};
     ErrorMatrix claimed{ErrorMatrix::Zero()};
   };
-  std::vector<FixGain> gains{};  ///< of arriving_fixes()
-  std::vector<Epoch> epochs{};   ///< at the arrival of those that are scored
-  bool is_positive{true};        ///< P, after every fix
+  std::vector<FixGains<1>> gains{};  ///< of arriving_fixes()
+  std::vector<Epoch> epochs{};       ///< at the arrival of those that are scored
+  bool is_positive{true};            ///< P, after every fix
 };
 
 /// The mean error is what single steps of the model's strapdown on true increments miss the path

@@ -121,18 +121,18 @@ class Budgeting {
   }
 
   void measure() {
-    std::vector<ReductionCase> cases;
-    for (const ModelWorth* model : models()) cases.push_back({&plan_, model->model});
+    std::vector<FilterCase> cases;
+    for (const ModelWorth* model : models()) cases.push_back(case_of(plan_, model->model));
     std::vector<std::unique_ptr<TrialPlan>> other_sensors;
     for (const TermWorth& term : result_.terms) {
       const auto sources = sources_of(term.term);
       if (sources.empty()) {
-        cases.push_back({&plan_, without(full_, {term.term})});
+        cases.push_back(case_of(plan_, without(full_, {term.term})));
         continue;
       }
       other_sensors.push_back(std::make_unique<TrialPlan>(without_sources(plan_.scene(), sources),
                                                           std::nullopt, options_.threads));
-      cases.push_back({other_sensors.back().get(), full_});
+      cases.push_back(case_of(*other_sensors.back(), full_));
     }
     const auto accuracies = measured(cases, options_.threads, part(0.3, 0.9));
     auto next = accuracies.begin();

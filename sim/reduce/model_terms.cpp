@@ -9,37 +9,6 @@
 namespace leeway::sim {
 namespace {
 
-struct TermWords {
-  std::string_view name;
-  std::string_view substitute;
-};
-
-// In the order of ModelTerm.
-constexpr std::array<TermWords, 22> kTermWords{{
-    {"earth_rotation", "no turn of the Earth in the attitude"},
-    {"coriolis", "no Coriolis"},
-    {"gravity_beyond_j2", "J2 gravity"},
-    {"gravity_beyond_constant", "constant gravity"},
-    {"gravity_gradient", "no gravity gradient in Phi"},
-    {"coning", "no coning"},
-    {"sculling", "no sculling"},
-    {"integration_order", "explicit Euler"},
-    {"imu_rate_half", "increments added in pairs"},
-    {"imu_rate_fifth", "increments added in fives"},
-    {"covariance_0_1_s", "P every 0.1 s"},
-    {"covariance_1_s", "P every 1 s"},
-    {"double_precision", "P in float"},
-    {"accelerometer_bias", "no such states"},
-    {"gyro_bias", "no such states"},
-    {"bias_decay", "biases walk at random"},
-    {"bias_drive", "biases are constant"},
-    {"lever_arm", "antenna at the IMU"},
-    {"latency", "fixes valid at arrival"},
-    {"scale_factors", "no filter models them"},
-    {"misalignments", "no filter models them"},
-    {"g_sensitivity", "no filter models it"},
-}};
-
 bool has_gauss_markov(const Scene& scene) {
   const ProcessNoise noise = process_noise(scene.filter.imu);
   return std::isfinite(noise.tau_a_s) || std::isfinite(noise.tau_g_s);
@@ -64,142 +33,95 @@ bool divides(const Scene& scene, int divider) {
 }
 
 bool has_parameters(const Scene& scene, const std::vector<ErrorSource>& sources) {
-  const auto moments = TruthModel::parameter_moments(scene.imu);
+  const auto moments = parameter_moments(scene.imu);
   return std::any_of(moments.begin(), moments.end(), [&sources](const auto& moment) {
     return std::find(sources.begin(), sources.end(), moment.first) != sources.end();
   });
 }
 
+void raise(double& value, double least) { value = std::max(value, least); }
+
+/// BiasState is in the order of what the filter leaves out.
+void simplify(BiasStates& biases, BiasState least) {
+  biases = {std::max(biases.accelerometer, least), std::max(biases.gyro, least)};
+}
+
+/// What a filter does without a term, and where that makes a difference.
+struct TermRow {
+  std::string_view substitute;
+  void (*drop)(FilterModel&){[](FilterModel&) {}};
+  bool (*means_something)(const Scene&){[](const Scene&) { return true; }};
+};
+
+// In the order of ModelTerm.
+constexpr std::array<TermRow, kAll<ModelTerm>.size()> kTerms{{
+    {"no turn of the Earth in the attitude",
+     [](FilterModel& m) {
+       EarthRotation& rotation = m.config.strapdown.rotation;
+       rotation =
+           rotation == EarthRotation::kOn ? EarthRotation::kCoriolisAlone : EarthRotation::kOff;
+     }},
+    {"no Coriolis",
+     [](FilterModel& m) {
+       EarthRotation& rotation = m.config.strapdown.rotation;
+       rotation = rotation == EarthRotation::kOn ? EarthRotation::kTurnAlone : EarthRotation::kOff;
+     }},
+    {"J2 gravity",
+     [](FilterModel& m) {
+       GravityModel& gravity = m.config.strapdown.gravity;
+       if (gravity == GravityModel::kNormal) gravity = GravityModel::kJ2;
+     }},
+    {"constant gravity",
+     [](FilterModel& m) { m.config.strapdown.gravity = GravityModel::kConstant; }},
+    {"no gravity gradient in Phi", [](FilterModel& m) { m.config.gravity_gradient = false; }},
+    {"no coning",
+     [](FilterModel& m) {
+       Scheme& scheme = m.config.strapdown.scheme;
+       scheme = scheme == Scheme::kTwoSample ? Scheme::kSculling : Scheme::kOneSample;
+     }},
+    {"no sculling",
+     [](FilterModel& m) {
+       Scheme& scheme = m.config.strapdown.scheme;
+       scheme = scheme == Scheme::kTwoSample ? Scheme::kConing : Scheme::kOneSample;
+     }},
+    {"explicit Euler", [](FilterModel& m) { m.config.strapdown.scheme = Scheme::kExplicitEuler; }},
+    {"increments added in pairs",
+     [](FilterModel& m) { m.imu_divider = std::max(m.imu_divider, 2); },
+     [](const Scene& scene) { return divides(scene, 2); }},
+    {"increments added in fives",
+     [](FilterModel& m) { m.imu_divider = std::max(m.imu_divider, 5); },
+     [](const Scene& scene) { return divides(scene, 5); }},
+    {"P every 0.1 s", [](FilterModel& m) { raise(m.config.covariance_interval_s, 0.1); },
+     [](const Scene& scene) { return scene.imu_rate_hz > 10.0; }},
+    {"P every 1 s", [](FilterModel& m) { raise(m.config.covariance_interval_s, 1.0); }},
+    {"P in float", [](FilterModel& m) { m.precision = Precision::kFloat; }},
+    {"no such states", [](FilterModel& m) { m.config.biases.accelerometer = BiasState::kNone; },
+     [](const Scene& scene) { return has_bias(scene.filter.imu.accelerometer); }},
+    {"no such states", [](FilterModel& m) { m.config.biases.gyro = BiasState::kNone; },
+     [](const Scene& scene) { return has_bias(scene.filter.imu.gyro); }},
+    {"biases walk at random",
+     [](FilterModel& m) { simplify(m.config.biases, BiasState::kRandomWalk); }, has_gauss_markov},
+    {"biases are constant", [](FilterModel& m) { simplify(m.config.biases, BiasState::kConstant); },
+     has_drive},
+    {"antenna at the IMU", [](FilterModel& m) { m.config.lever_arm_b_m.setZero(); },
+     [](const Scene& scene) { return !scene.gnss.errors.lever_arm_b_m.isZero(0.0); }},
+    {"fixes valid at arrival", [](FilterModel& m) { m.knows_latency = false; },
+     [](const Scene& scene) { return scene.gnss.latency_s > 0.0; }},
+    {"no filter models them"},
+    {"no filter models them"},
+    {"no filter models it"},
+}};
+
+const TermRow& row_of(ModelTerm term) { return kTerms[static_cast<std::size_t>(term)]; }
+
 bool means_something(ModelTerm term, const Scene& scene) {
-  switch (term) {
-    case ModelTerm::kFullRate:
-      return divides(scene, 2);
-    case ModelTerm::kFifthRate:
-      return divides(scene, 5);
-    case ModelTerm::kEachCovariance:
-      return scene.imu_rate_hz > 10.0;
-    case ModelTerm::kAccelerometerBias:
-      return has_bias(scene.filter.imu.accelerometer);
-    case ModelTerm::kGyroBias:
-      return has_bias(scene.filter.imu.gyro);
-    case ModelTerm::kBiasDecay:
-      return has_gauss_markov(scene);
-    case ModelTerm::kBiasDrive:
-      return has_drive(scene);
-    case ModelTerm::kLeverArm:
-      return !scene.gnss.errors.lever_arm_b_m.isZero(0.0);
-    case ModelTerm::kLatency:
-      return scene.gnss.latency_s > 0.0;
-    default:
-      return sources_of(term).empty() || has_parameters(scene, sources_of(term));
-  }
-}
-
-Scheme without_coning(Scheme scheme) {
-  return scheme == Scheme::kTwoSample ? Scheme::kSculling : Scheme::kOneSample;
-}
-
-Scheme without_sculling(Scheme scheme) {
-  return scheme == Scheme::kTwoSample ? Scheme::kConing : Scheme::kOneSample;
-}
-
-EarthRotation without_turn(EarthRotation rotation) {
-  return rotation == EarthRotation::kOn ? EarthRotation::kCoriolisAlone : EarthRotation::kOff;
-}
-
-EarthRotation without_coriolis(EarthRotation rotation) {
-  return rotation == EarthRotation::kOn ? EarthRotation::kTurnAlone : EarthRotation::kOff;
-}
-
-void drop_of_strapdown(ModelTerm term, StrapdownPolicy& strapdown) {
-  switch (term) {
-    case ModelTerm::kEarthTurn:
-      strapdown.rotation = without_turn(strapdown.rotation);
-      break;
-    case ModelTerm::kCoriolis:
-      strapdown.rotation = without_coriolis(strapdown.rotation);
-      break;
-    case ModelTerm::kNormalGravity:
-      if (strapdown.gravity == GravityModel::kNormal) strapdown.gravity = GravityModel::kJ2;
-      break;
-    case ModelTerm::kJ2:
-      strapdown.gravity = GravityModel::kConstant;
-      break;
-    case ModelTerm::kConing:
-      strapdown.scheme = without_coning(strapdown.scheme);
-      break;
-    case ModelTerm::kSculling:
-      strapdown.scheme = without_sculling(strapdown.scheme);
-      break;
-    case ModelTerm::kSecondOrder:
-      strapdown.scheme = Scheme::kExplicitEuler;
-      break;
-    default:
-      break;
-  }
-}
-
-void drop_of_covariance(ModelTerm term, FilterModel& model) {
-  double& interval_s = model.config.covariance_interval_s;
-  BiasStates& biases = model.config.biases;
-  switch (term) {
-    case ModelTerm::kGravityGradient:
-      model.config.gravity_gradient = false;
-      break;
-    case ModelTerm::kEachCovariance:
-      interval_s = std::max(interval_s, 0.1);
-      break;
-    case ModelTerm::kTenthCovariance:
-      interval_s = std::max(interval_s, 1.0);
-      break;
-    case ModelTerm::kDoublePrecision:
-      model.precision = Precision::kFloat;
-      break;
-    case ModelTerm::kAccelerometerBias:
-      biases.accelerometer = BiasState::kNone;
-      break;
-    case ModelTerm::kGyroBias:
-      biases.gyro = BiasState::kNone;
-      break;
-    case ModelTerm::kBiasDecay:
-      biases = {std::max(biases.accelerometer, BiasState::kRandomWalk),
-                std::max(biases.gyro, BiasState::kRandomWalk)};
-      break;
-    case ModelTerm::kBiasDrive:
-      biases = {std::max(biases.accelerometer, BiasState::kConstant),
-                std::max(biases.gyro, BiasState::kConstant)};
-      break;
-    default:
-      break;
-  }
-}
-
-void drop_of_input(ModelTerm term, FilterModel& model) {
-  switch (term) {
-    case ModelTerm::kFullRate:
-      model.imu_divider = std::max(model.imu_divider, 2);
-      break;
-    case ModelTerm::kFifthRate:
-      model.imu_divider = std::max(model.imu_divider, 5);
-      break;
-    case ModelTerm::kLeverArm:
-      model.config.lever_arm_b_m.setZero();
-      break;
-    case ModelTerm::kLatency:
-      model.knows_latency = false;
-      break;
-    default:
-      break;
-  }
+  const auto sources = sources_of(term);
+  return row_of(term).means_something(scene) && (sources.empty() || has_parameters(scene, sources));
 }
 
 }  // namespace
 
-std::string_view name(ModelTerm term) { return kTermWords[static_cast<std::size_t>(term)].name; }
-
-std::string_view substitute(ModelTerm term) {
-  return kTermWords[static_cast<std::size_t>(term)].substitute;
-}
+std::string_view substitute(ModelTerm term) { return row_of(term).substitute; }
 
 std::vector<ErrorSource> sources_of(ModelTerm term) {
   switch (term) {
@@ -238,8 +160,7 @@ bool may_be_dropped(ModelTerm term) {
 
 std::vector<ModelTerm> terms_of(const Scene& scene) {
   std::vector<ModelTerm> terms;
-  for (std::size_t i = 0; i < kTermWords.size(); ++i) {
-    const auto term = static_cast<ModelTerm>(i);
+  for (const ModelTerm term : kAll<ModelTerm>) {
     if (means_something(term, scene)) terms.push_back(term);
   }
   return terms;
@@ -255,11 +176,7 @@ FilterModel full_model(const Scene& scene) {
 }
 
 FilterModel without(FilterModel model, const std::vector<ModelTerm>& terms) {
-  for (const ModelTerm term : terms) {
-    drop_of_strapdown(term, model.config.strapdown);
-    drop_of_covariance(term, model);
-    drop_of_input(term, model);
-  }
+  for (const ModelTerm term : terms) row_of(term).drop(model);
   return model;
 }
 

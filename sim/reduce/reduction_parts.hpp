@@ -9,8 +9,8 @@
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/trials/trial.hpp"
+#include "sim/compare/filter_case.hpp"
 #include "sim/compare/variant_cost.hpp"
-#include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 
@@ -43,15 +43,12 @@ class TermPrediction {
   std::unique_ptr<const Track> track_;
 };
 
-/// One thing to run in every trial: a filter, on the sensors of a plan.
-struct ReductionCase {
-  const TrialPlan* plan{};
-  FilterModel model{};
-};
+/// The filter of a model on the sensors of a plan, which outlives it.
+FilterCase case_of(const TrialPlan& plan, const FilterModel& model);
 
 /// All cases on the same noise, trial by trial; the first is what the others are compared with, and
 /// its plan has trials, seeds and metric.
-std::vector<MeasuredAccuracy> measured(const std::vector<ReductionCase>& cases, int threads,
+std::vector<MeasuredAccuracy> measured(const std::vector<FilterCase>& cases, int threads,
                                        const std::function<void(double)>& progress);
 
 /// The costs of the models in the first trial of the plan, in their order, and of every model what

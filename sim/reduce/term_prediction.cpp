@@ -3,41 +3,53 @@
 #include <limits>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
 #include "sim/analysis/truth_model.hpp"
 #include "sim/reduce/linear_filter.hpp"
 #include "sim/reduce/reduction_parts.hpp"
+#include "sim/trials/recorded_trial.hpp"
 #include "sim/trials/trial_score.hpp"
 
 namespace leeway::sim {
 namespace {
 
-/// A track whose biases do not decay: PairedCovariance has them decay itself.
+/// The full model's errors, then another's, in one covariance: what they differ by is a part of it.
+/// Both integrate the motion alike, and differ in their gains and in what they make of the biases.
+/// What makes a mean difference is not here.
+using Pair = TruthModel<2>;
+
+/// Shared by filters that let their biases decay each in its own way.
 ErrorTrack undecayed_track(Scene scene) {
   scene.filter.biases = {BiasState::kRandomWalk, BiasState::kRandomWalk};
   return error_track(scene);
 }
 
-PairedCovariance::BiasTimes bias_times(const FilterModel& model) {
-  const ProcessNoise noise = process_noise(model.config.imu, model.config.biases);
-  return {noise.tau_a_s, noise.tau_g_s};
+ProcessNoise noise_of(const FilterModel& model) {
+  return process_noise(model.config.imu, model.config.biases);
+}
+
+ErrorMatrix block(const ErrorMoment<2>& Z, int row, int column) {
+  return Z.block<kErrorStates, kErrorStates>(row * kErrorStates, column * kErrorStates);
 }
 
 /// Sums over scored fixes.
 class PredictionSums {
  public:
-  void add(const PairedCovariance& pair, const LinearFilterRun::Epoch& epoch,
-           const Eigen::Matrix3d& C_en) {
-    const auto horizontal = [&C_en](const ErrorMatrix& P) -> Eigen::Matrix2d {
-      return C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>();
+  void add(const Pair& pair, const LinearFilterRun::Epoch& epoch, const Eigen::Vector3d& r_e_m) {
+    const auto horizontal = [&r_e_m](const ErrorMatrix& P) {
+      return horizontal_covariance(r_e_m, P.block<3, 3>(kDr, kDr));
     };
     const ErrorMatrix mean_sq = epoch.mean * epoch.mean.transpose();
-    const ErrorMatrix moment = pair.of(1) + mean_sq;
+    const ErrorMoment<2> Z = pair.covariance();
+    const ErrorMatrix moment = block(Z, 1, 1) + mean_sq;
+    const ErrorMatrix difference =
+        block(Z, 0, 0) - block(Z, 0, 1) - block(Z, 1, 0) + block(Z, 1, 1) + mean_sq;
     ++epochs_;
     moment_m2_ += horizontal(moment);
     claimed_m2_ += horizontal(epoch.claimed).trace();
-    difference_m2_ += horizontal(pair.difference() + mean_sq).trace();
+    difference_m2_ += horizontal(difference).trace();
     nees_ += expected_nees(moment, epoch.claimed);
   }
 
@@ -74,41 +86,37 @@ struct TermPrediction::Track {
         full(full_model),
         full_pass(run_linear_filter(path, full_model)) {}
 
-  double time_s(std::size_t increment) const { return to_seconds(path.states[increment + 1].time); }
-
-  void advance(PairedCovariance& pair, double from_s, double to_s) const {
-    while (from_s < to_s) {
-      const Leg leg = errors.leg(from_s, to_s);
-      pair.propagate(leg);
-      from_s = leg.end_s;
-    }
+  void advance(Pair& pair, std::size_t from, std::size_t to) const {
+    const auto time_s = [this](std::size_t state) { return to_seconds(path.states[state].time); };
+    errors.follow(time_s(from), time_s(to), [&pair](const Leg& leg) { pair.propagate(leg); });
   }
 
   /// Runs the full model beside another, and shows the pair at every scored fix before it is used.
   template <class Show>
   void run(const FilterModel& model, const LinearFilterRun& pass, const Show& show) const {
     const Scene& scene = path.plan.scene();
-    Estimate start;
-    start.nav = path.states.front();
-    ErrorMatrix P = initial_covariance(start, path.plan.initial(), scene.filter.imu);
+    ErrorMatrix P =
+        initial_covariance({path.states.front(), {}}, path.plan.initial(), scene.filter.imu);
     P.bottomRightCorner<6, 6>().setZero();
-    PairedCovariance pair(scene, P, {bias_times(full), bias_times(model)});
-    const auto fixes = arriving_fixes(path.plan);
-    const auto weights = fix_weights(path.plan, scene.filter.gnss_correlation_s);
-    double now_s = 0.0;
+    Pair pair(scene, P, {noise_of(full), noise_of(model)}, false);
+    PositionWeight weight(scene.filter.gnss_correlation_s);
+    std::size_t now = 0;  // of the states of the path
     auto epoch = pass.epochs.begin();
-    for (std::size_t i = 0; i < fixes.size(); ++i) {
-      const double fix_s = time_s(fixes[i].at);
-      advance(pair, now_s, fix_s);
-      now_s = fix_s;
-      if (fixes[i].scored) {
-        PairedCovariance without_fix = pair;
-        advance(without_fix, fix_s, time_s(fixes[i].arrives));
-        const Geodetic place = geodetic_from_ecef(path.states[fixes[i].arrives + 1].r_e_m);
-        show(without_fix, *epoch++, ned_to_ecef(place));
+    auto gain = pass.gains.begin();
+    auto full_gain = full_pass.gains.begin();
+    for (const TrialPlan::Fix& fix : arriving_fixes(path.plan)) {
+      advance(pair, now, fix.at + 1);
+      now = fix.at + 1;
+      if (fix.scored) {
+        Pair without_fix = pair;
+        advance(without_fix, now, fix.arrives + 1);
+        show(without_fix, *epoch++, path.at_end_of(fix.arrives).r_e_m);
       }
-      pair.update(fix_rows(path, fixes[i].at, scene.gnss.errors.lever_arm_b_m, weights[i]),
-                  {full_pass.gains[i], pass.gains[i]});
+      const Time t = path.states[now].time;
+      FixGains<2> gains;
+      gains << *full_gain++, *gain++;
+      pair.update(path.fix_rows(fix.at, scene.gnss.errors.lever_arm_b_m, weight.of(t)), gains);
+      weight.fused(t);
     }
   }
 
@@ -128,28 +136,23 @@ PredictedAccuracy TermPrediction::of(const FilterModel& model) const {
   if (!pass.is_positive) return no_numbers();
   PredictionSums sums;
   track_->run(model, pass,
-              [&sums](const PairedCovariance& pair, const LinearFilterRun::Epoch& epoch,
-                      const Eigen::Matrix3d& C_en) { sums.add(pair, epoch, C_en); });
+              [&sums](const Pair& pair, const LinearFilterRun::Epoch& epoch,
+                      const Eigen::Vector3d& r_e_m) { sums.add(pair, epoch, r_e_m); });
   return sums.result(track_->path.plan.scene().limit.metric);
 }
 
 double TermPrediction::contribution_m(const std::vector<ErrorSource>& sources) const {
-  PairedCovariance::ParameterMoment wanted = PairedCovariance::ParameterMoment::Zero();
-  for (const auto& [source, moment] :
-       TruthModel::parameter_moments(track_->path.plan.scene().imu)) {
-    if (std::find(sources.begin(), sources.end(), source) != sources.end()) wanted += moment;
-  }
   double sum_m2 = 0.0;
   int epochs = 0;
-  track_->run(
-      track_->full, track_->full_pass,
-      [&](const PairedCovariance& pair, const LinearFilterRun::Epoch&,
-          const Eigen::Matrix3d& C_en) {
-        const ErrorMatrix P = pair.of_parameters(0, wanted);
-        ++epochs;
-        sum_m2 +=
-            (C_en.leftCols<2>().transpose() * P.block<3, 3>(kDr, kDr) * C_en.leftCols<2>()).trace();
-      });
+  track_->run(track_->full, track_->full_pass,
+              [&](const Pair& pair, const LinearFilterRun::Epoch&, const Eigen::Vector3d& r_e_m) {
+                ++epochs;
+                for (const auto& [source, mean_sq_n_m2] :
+                     pair.budget(ned_to_ecef(geodetic_from_ecef(r_e_m)))) {
+                  if (std::find(sources.begin(), sources.end(), source) == sources.end()) continue;
+                  sum_m2 += mean_sq_n_m2.topLeftCorner<2, 2>().trace();
+                }
+              });
   return std::sqrt(sum_m2 / epochs);
 }
 

@@ -2,54 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/logs/solution_writer.hpp"
-#include "leeway/model/gnss_measurement.hpp"
+#include "sim/replay/outage_branch.hpp"
+#include "sim/replay/reference.hpp"
 
 namespace leeway::sim {
 namespace {
-
-/// Horizontal and vertical distance of two points a short way apart.
-struct Miss {
-  double horizontal_m;
-  double vertical_m;
-};
-
-Miss miss(const Eigen::Vector3d& a_e_m, const Eigen::Vector3d& b_e_m) {
-  const Eigen::Vector3d d_n = ned_to_ecef(geodetic_from_ecef(b_e_m)).transpose() * (a_e_m - b_e_m);
-  return {d_n.head<2>().norm(), std::abs(d_n.z())};
-}
-
-/// Carries the estimate back by less than an IMU interval, at its velocity.
-Eigen::Vector3d moved_to(Time t, const NavState& nav, const Eigen::Vector3d& r_e_m) {
-  return r_e_m + to_seconds(t - nav.time) * nav.v_e_mps;
-}
-
-/// The truth log within its window of use.
-class Reference {
- public:
-  explicit Reference(const ReplayInput& input)
-      : track_(TruthLogReader(input.truth)),
-        from_(clamped(input.truth_from_s)),
-        to_(clamped(input.truth_to_s)) {}
-
-  std::optional<TruthRecord> at(Time t) {
-    if (t < from_ || t > to_) return std::nullopt;
-    return track_.interpolate(t);
-  }
-
-  const LogSummary& report() const { return track_.report(); }
-
- private:
-  static Time clamped(double t_s) { return time_from_seconds(std::clamp(t_s, -9e9, 9e9)); }
-
-  TruthTrack track_;
-  Time from_;
-  Time to_;
-};
 
 /// The readings of a sensor whose log may be missing, in the order of time.
 class Readings {
@@ -75,134 +36,6 @@ class Readings {
   const Aiding& aiding_;
   std::optional<ScalarLogReader> reader_{};
   std::optional<ScalarRecord> next_{};
-};
-
-/// One outage: a copy of the navigator that goes on without fixes.
-class Branch {
- public:
-  Branch(std::size_t index, const Outage& outage, const ReplayObserver& observer)
-      : index_(index),
-        observer_(observer),
-        start_(time_from_seconds(outage.start_s)),
-        end_(start_ + duration_from_seconds(outage.duration_s)) {
-    result_.outage = outage;
-  }
-
-  std::size_t index() const { return index_; }
-  Time start() const { return start_; }
-  bool over() const { return over_; }
-  bool is_running() const { return navigator_.has_value(); }
-  const OutageResult& result() const { return result_; }
-
-  void begin(const Navigator& aided) {
-    if (!navigator_) navigator_ = aided;
-  }
-
-  bool withholds(Time t) const { return navigator_ && !over_ && t > start_ && t <= end_; }
-
-  void withhold(const GnssFix& fix) { withheld_ = fix; }
-
-  /// Aiding goes on through an outage. @pre begin() has been called.
-  void push(const Reading& reading) { navigator_->push(reading); }
-
-  /// @pre begin() has been called.
-  void push(const ImuIncrement& inc, Reference* reference) {
-    navigator_->push(inc);
-    if (withheld_ && withheld_->time <= inc.time) {
-      compare(withheld_->time, reference);
-      withheld_.reset();
-    }
-    if (inc.time >= end_) finish(reference);
-  }
-
- private:
-  /// Error at t, against the reference or, without one, the withheld fix of that time.
-  void compare(Time t, Reference* reference) {
-    if (!navigator_->aligned()) return;
-    const Estimate& estimate = navigator_->filter().estimate();
-    Miss m{};
-    if (reference) {
-      const auto truth = reference->at(t);
-      if (!truth) return;
-      m = miss(moved_to(t, estimate.nav, estimate.nav.r_e_m),
-               ecef_from_geodetic(truth->nav.position));
-    } else {
-      if (!withheld_->position) return;
-      const Eigen::Vector3d& lever = navigator_->filter().inertial().config().lever_arm_b_m;
-      m = miss(moved_to(t, estimate.nav, antenna_position_e(estimate, lever)),
-               withheld_->position->r_e_m);
-    }
-    result_.end_error_h_m = m.horizontal_m;
-    result_.end_error_v_m = m.vertical_m;
-    result_.max_error_h_m = std::max(result_.max_error_h_m, m.horizontal_m);
-    last_compared_ = t;
-    if (!observer_.outage) return;
-    observer_.outage({index_, to_seconds(t - start_), m.horizontal_m, sigma_h_m()});
-  }
-
-  double sigma_h_m() const { return navigator_->solution().sigma_position_n_m.head<2>().norm(); }
-
-  void finish(Reference* reference) {
-    // The reference must reach the very end; GNSS epochs may miss it by one.
-    constexpr Duration kEpochSlack = std::chrono::milliseconds{1500};
-    if (reference && last_compared_ < end_) compare(end_, reference);
-    if (last_compared_ >= (reference ? end_ : end_ - kEpochSlack)) {
-      result_.against = reference ? Against::kReference : Against::kGnss;
-    }
-    if (navigator_->aligned()) {
-      result_.end_sigma_h_m = sigma_h_m();
-    }
-    over_ = true;
-    navigator_.reset();
-  }
-
-  std::size_t index_;
-  const ReplayObserver& observer_;
-  Time start_;
-  Time end_;
-  std::optional<Navigator> navigator_{};
-  std::optional<GnssFix> withheld_{};
-  Time last_compared_{Time::min()};
-  bool over_{false};
-  OutageResult result_{};
-};
-
-/// Sums of squares towards RmsErrors.
-class RmsSum {
- public:
-  void add(const NavState& nav, const TruthRecord& truth) {
-    const NavState true_nav = nav_state_from_ned(truth.nav);
-    const Miss m = miss(nav.r_e_m, true_nav.r_e_m);
-    ++epochs_;
-    horizontal_ += m.horizontal_m * m.horizontal_m;
-    vertical_ += m.vertical_m * m.vertical_m;
-    if (truth.has_velocity) {
-      velocity_ += (nav.v_e_mps - true_nav.v_e_mps).squaredNorm();
-      ++velocity_epochs_;
-    }
-    if (truth.has_attitude) {
-      attitude_ += log_quaternion(nav.q_eb * true_nav.q_eb.conjugate()).squaredNorm();
-      ++attitude_epochs_;
-    }
-  }
-
-  RmsErrors rms() const {
-    const auto root = [](double sum, std::int64_t n) {
-      return n > 0 ? std::sqrt(sum / static_cast<double>(n))
-                   : std::numeric_limits<double>::quiet_NaN();
-    };
-    return {epochs_, root(horizontal_, epochs_), root(vertical_, epochs_),
-            root(velocity_, velocity_epochs_), root(attitude_, attitude_epochs_) / kRadPerDeg};
-  }
-
- private:
-  std::int64_t epochs_{0};
-  std::int64_t velocity_epochs_{0};
-  std::int64_t attitude_epochs_{0};
-  double horizontal_{0.0};
-  double vertical_{0.0};
-  double velocity_{0.0};
-  double attitude_{0.0};
 };
 
 /// The pass over the logs.
@@ -248,7 +81,7 @@ class Replay {
   void push_fixes(Time t) {
     for (; next_fix_ && next_fix_->time <= t; next_fix_ = gnss_.next()) {
       begin_branches(next_fix_->time - Duration{1});
-      for (Branch& branch : branches_) {
+      for (OutageBranch& branch : branches_) {
         if (branch.withholds(next_fix_->time)) branch.withhold(*next_fix_);
       }
       navigator_.push(*next_fix_);
@@ -257,7 +90,7 @@ class Replay {
     imu_started_ = true;
     begin_branches(t);
     const auto push_to_all = [this](const Reading& reading) {
-      for (Branch& branch : branches_) {
+      for (OutageBranch& branch : branches_) {
         if (branch.is_running()) branch.push(reading);
       }
       navigator_.push(reading);
@@ -266,13 +99,13 @@ class Replay {
   }
 
   void begin_branches(Time t) {
-    for (Branch& branch : branches_) {
+    for (OutageBranch& branch : branches_) {
       if (!branch.over() && branch.start() <= t) branch.begin(navigator_);
     }
   }
 
   void push(const ImuIncrement& inc) {
-    for (Branch& branch : branches_) {
+    for (OutageBranch& branch : branches_) {
       if (!branch.over() && branch.start() <= inc.time) branch.push(inc, reference());
     }
     const Time judged = navigator_.last_update().time;
@@ -326,7 +159,7 @@ class Replay {
 
   ReplayResult result() {
     if (writer_) writer_->close();
-    for (const Branch& branch : branches_) result_.outages.push_back(branch.result());
+    for (const OutageBranch& branch : branches_) result_.outages.push_back(branch.result());
     result_.rms = rms_.rms();
     for (std::size_t v = 0; v < kVerdicts; ++v) {
       result_.verdicts[v] = navigator_.count(static_cast<Verdict>(v));
@@ -363,7 +196,7 @@ class Replay {
   Duration output_interval_;
   std::optional<Reference> reference_{};
   std::optional<SolutionWriter> writer_{};
-  std::vector<Branch> branches_{};
+  std::vector<OutageBranch> branches_{};
   std::optional<GnssFix> next_fix_{};
   bool imu_started_{false};
   Time next_output_{Time::min()};

@@ -2,39 +2,26 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
+#include <type_traits>
 
 #include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
 
 namespace leeway::sim {
 namespace {
 
-constexpr Quantity kGateProbability{"gate_probability", {}, zero_or(1e-15, 0.1)};
-constexpr Quantity kCovarianceInterval{"covariance_interval", kTimes, zero_or(1e-4, 10.0)};
-constexpr Quantity kGnssCorrelation{"gnss_correlation", kTimes, zero_or(0.1, 1e5)};
 constexpr std::int64_t kLargestDivider = 1000;
 
-// Each in the order of its enumeration.
-constexpr std::array<std::string_view, 8> kSchemeNames{
-    "explicit_euler", "semi_implicit_euler", "trapezoid", "one_sample",
-    "two_sample",     "runge_kutta_4",       "coning",    "sculling"};
-constexpr std::array<std::string_view, 3> kGravityNames{"constant", "j2", "normal"};
-constexpr std::array<std::string_view, 4> kBiasStateNames{"modelled", "random_walk", "constant",
-                                                          "none"};
+constexpr std::array<Quantity, 3> kNumbers{{{"gate_probability", {}, zero_or(1e-15, 0.1)},
+                                            {"covariance_interval", kTimes, zero_or(1e-4, 10.0)},
+                                            {"gnss_correlation", kTimes, zero_or(0.1, 1e5)}}};
 
-template <std::size_t N, class Value>
-void set_choice(TomlSection& section, std::string_view key,
-                const std::array<std::string_view, N>& names, Value& value) {
-  if (const auto index = section.choice(key, names)) value = static_cast<Value>(*index);
-}
-
-template <std::size_t N, class Value>
-std::string_view word_for(const std::array<std::string_view, N>& names, Value value) {
-  return names[static_cast<std::size_t>(value)];
-}
+/// What a filter is told of the sensors and the receiver of a scene: no other scene takes it over.
+constexpr std::array kOfTheScene{"imu", "lever_arm_b_m", "gate_probability", "gnss_correlation_s"};
 
 bool has_turn(EarthRotation rotation) {
   return rotation == EarthRotation::kOn || rotation == EarthRotation::kTurnAlone;
@@ -56,19 +43,29 @@ void read_earth_rotation(TomlSection& section, EarthRotation& rotation) {
                                coriolis.value_or(both.value_or(has_coriolis(rotation))));
 }
 
+std::string key_of(const FieldPath& path) {
+  return path.root() == "biases" ? std::string(path.name) + "_bias" : path.name;
+}
+
 }  // namespace
 
 void read_filter(TomlSection& section, Scene& scene) {
-  EkfConfig& filter = scene.filter;
-  set(section, kGateProbability, filter.gate_probability);
-  set(section, kCovarianceInterval, filter.covariance_interval_s);
-  set(section, kGnssCorrelation, filter.gnss_correlation_s);
-  set_choice(section, "scheme", kSchemeNames, filter.strapdown.scheme);
-  set_choice(section, "gravity", kGravityNames, filter.strapdown.gravity);
-  read_earth_rotation(section, filter.strapdown.rotation);
-  filter.gravity_gradient = section.boolean("gravity_gradient").value_or(filter.gravity_gradient);
-  set_choice(section, "accelerometer_bias", kBiasStateNames, filter.biases.accelerometer);
-  set_choice(section, "gyro_bias", kBiasStateNames, filter.biases.gyro);
+  walk_fields(scene.filter, [&section](const FieldPath& path, auto& value, const Range&) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if (path.root() == "imu") return;  // [filter.imu]
+    const std::string key = key_of(path);
+    if constexpr (std::is_same_v<Value, EarthRotation>) {
+      read_earth_rotation(section, value);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      value = section.boolean(key).value_or(value);
+    } else if constexpr (NamedEnum<Value>) {
+      value = section.choice<Value>(key).value_or(value);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      for (const Quantity& number : kNumbers) {
+        if (key.starts_with(number.name)) set(section, number, value);
+      }
+    }
+  });
   scene.imu_divider = static_cast<int>(
       section.integer("imu_divider", 1, kLargestDivider).value_or(scene.imu_divider));
 }
@@ -88,17 +85,20 @@ std::string filter_file(const Scene& scene, std::string_view comment) {
     text += fmt::format("# {}\n", comment.substr(0, end));
     comment.remove_prefix(end == comment.npos ? comment.size() : end + 1);
   }
-  const EkfConfig& filter = scene.filter;
-  return text +
-         fmt::format(
-             "[filter]\nscheme = \"{}\"\ngravity = \"{}\"\nearth_rotation = {}\ncoriolis = {}\n"
-             "gravity_gradient = {}\ncovariance_interval_s = {}\naccelerometer_bias = \"{}\"\n"
-             "gyro_bias = \"{}\"\nimu_divider = {}\n",
-             word_for(kSchemeNames, filter.strapdown.scheme),
-             word_for(kGravityNames, filter.strapdown.gravity), has_turn(filter.strapdown.rotation),
-             has_coriolis(filter.strapdown.rotation), filter.gravity_gradient,
-             filter.covariance_interval_s, word_for(kBiasStateNames, filter.biases.accelerometer),
-             word_for(kBiasStateNames, filter.biases.gyro), scene.imu_divider);
+  text += "[filter]\n";
+  walk_fields(scene.filter, [&text](const FieldPath& path, const auto& value, const Range&) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if (std::ranges::find(kOfTheScene, path.root()) != kOfTheScene.end()) return;
+    if constexpr (std::is_same_v<Value, EarthRotation>) {
+      text +=
+          fmt::format("earth_rotation = {}\ncoriolis = {}\n", has_turn(value), has_coriolis(value));
+    } else if constexpr (NamedEnum<Value>) {
+      text += fmt::format("{} = \"{}\"\n", key_of(path), name(value));
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      text += fmt::format("{} = {}\n", key_of(path), value);
+    }
+  });
+  return text + fmt::format("imu_divider = {}\n", scene.imu_divider);
 }
 
 }  // namespace leeway::sim

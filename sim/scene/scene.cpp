@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -15,13 +15,6 @@ namespace {
 constexpr double kLevellingGravityMps2 = 9.806;
 constexpr double kLeastHeadingRad = 1e-5;
 constexpr double kMostHeadingRad = 10.0 * kRadPerDeg;
-
-void require(bool ok, const char* field, double value, const char* range) {
-  if (ok) return;
-  std::ostringstream message;
-  message << "scene: " << field << " is " << value << ", must be " << range;
-  throw Error(message.str());
-}
 
 /// Of the bias at the start, turn-on and in-run together.
 double bias_sigma(const TriadErrorModel& triad) {
@@ -38,27 +31,9 @@ bool is_withheld(const std::vector<Outage>& outages, double t_s) {
 
 void validate(const Scene& scene) {
   if (!scene.trajectory.motion) throw Error("scene: the trajectory has no motion");
-  validate(scene.imu);
+  validate_fields("scene", scene);
   validate(scene.gnss.errors);
-  require(scene.duration_s > 0.0 && scene.duration_s <= scene.trajectory.duration_s, "duration_s",
-          scene.duration_s, "> 0 and at most the trajectory's duration");
-  require(scene.imu_rate_hz >= 1.0 && scene.imu_rate_hz <= 1e4, "imu_rate_hz", scene.imu_rate_hz,
-          "1 to 1e4");
-  require(scene.gnss.interval_s >= 1e-3 && scene.gnss.interval_s <= 1e6, "gnss interval_s",
-          scene.gnss.interval_s, "0.001 to 1e6");
-  require(scene.gnss.latency_s >= 0.0 && scene.gnss.latency_s <= 60.0, "gnss latency_s",
-          scene.gnss.latency_s, "0 to 60");
-  require(scene.gnss.outlier_probability >= 0.0 && scene.gnss.outlier_probability <= 0.5,
-          "gnss outlier_probability", scene.gnss.outlier_probability, "0 to 0.5");
-  require(scene.gnss.outlier_sigma_m >= 0.0 && scene.gnss.outlier_sigma_m <= 1e6,
-          "gnss outlier_sigma_m", scene.gnss.outlier_sigma_m, "0 to 1e6");
-  require(scene.limit.limit_m > 0.0 && scene.limit.limit_m <= 1e6, "limit limit_m",
-          scene.limit.limit_m, "> 0 and at most 1e6");
-  require(scene.limit.last_s > 0.0 && scene.limit.last_s <= 1e6, "limit last_s", scene.limit.last_s,
-          "> 0 and at most 1e6");
-  require(scene.imu_divider >= 1 && scene.imu_divider <= 1000, "imu_divider", scene.imu_divider,
-          "1 to 1000");
-  require(scene.trials >= 1, "trials", scene.trials, ">= 1");
+  require("scene", "duration_s", scene.duration_s, positive_to(scene.trajectory.duration_s));
 }
 
 void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model) {

@@ -30,7 +30,7 @@ class SceneReader {
     require(root, "trajectory", [this](TomlSection& section) {
       scene_.trajectory = read_trajectory(section, folder_, duration_s_);
       const double length_s = scene_.trajectory.duration_s;
-      if (!kDuration.limits.contain(length_s)) {
+      if (!kDuration.limits.contains(length_s)) {
         section.fail(fmt::format("the motion takes {:.9g} s, must be 1 to 1e6 s", length_s));
       }
     });
@@ -113,7 +113,7 @@ class SceneReader {
 
 Scene read(const TomlDocument& document, const std::filesystem::path& path,
            std::optional<double> duration_s, std::vector<std::string>* notes) {
-  if (duration_s && !kDuration.limits.contain(*duration_s)) {
+  if (duration_s && !kDuration.limits.contains(*duration_s)) {
     throw Error(
         fmt::format("the duration of a scene is {:.9g} s, must be 1 to 1e6 s", *duration_s));
   }

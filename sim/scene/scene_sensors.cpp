@@ -44,7 +44,7 @@ struct PositionSigma {
   Quantity vertical{};
   Quantity per_axis{};
 };
-constexpr Limits kSigmaLimits = zero_or(1e-3, 1e4);
+constexpr Range kSigmaLimits = zero_or(1e-3, 1e4);
 constexpr PositionSigma kPositionSigma{{"position_sigma_h", kLengths, kSigmaLimits},
                                        {"position_sigma_v", kLengths, kSigmaLimits},
                                        {"position_sigma_ned", kLengths, kSigmaLimits}};
@@ -56,29 +56,20 @@ constexpr const char* kPerAxis = ", one for each of north, east, down: [n, e, d]
 constexpr const char* kOrPerAxis = ", or one for each of north, east, down: [n, e, d]";
 constexpr const char* kForwardRightDown = ", one for each of forward, right, down: [x, y, z]";
 
-template <std::size_t N, class Values>
-std::array<std::string_view, N> names_of(const Values& values) {
-  std::array<std::string_view, N> names;
-  for (std::size_t i = 0; i < N; ++i) names[i] = name(values[i]);
-  return names;
-}
-
-/// The index of a choice as the value it stands for.
-template <class Values>
-auto chosen(TomlSection& section, std::string_view key, const Values& values)
-    -> std::optional<typename Values::value_type> {
-  const auto index = section.choice(key, names_of<std::tuple_size_v<Values>>(values));
-  return index ? std::optional(values[*index]) : std::nullopt;
-}
-
 NamedImuModel read_class(TomlSection& section, const std::string& wanted) {
-  const auto range = chosen(section, "range", kRangeEnds);
-  if (wanted == kMems) {
+  const auto range = section.choice<RangeEnd>("range");
+  if (is_same_name(wanted, kMems)) {
     if (range) section.fail_at("range", "is for the Table 1 classes: automotive-mems has none");
-    return {wanted, automotive_mems_model()};
+    return {std::string(kMems), automotive_mems_model()};
+  }
+  const auto imu = from_name<ImuClass>(wanted);
+  if (!imu) {
+    std::vector<std::string_view> classes(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
+    classes.push_back(kMems);
+    section.fail_unknown_word("class", wanted, classes);
   }
   const RangeEnd end = range.value_or(RangeEnd::kMid);
-  return {wanted + "/" + std::string(name(end)), imu_class_model(imu_class_from_name(wanted), end)};
+  return {fmt::format("{}/{}", name(*imu), name(end)), imu_class_model(*imu, end)};
 }
 
 /// What a key of the section names, read by f.
@@ -106,7 +97,7 @@ NamedImuModel read_model_file(const TomlSection& section, const std::filesystem:
 }
 
 void apply_bias(TomlSection& section, ImuErrorModel& model) {
-  const auto bias = chosen(section, "bias", kBiasModels);
+  const auto bias = section.choice<BiasModel>("bias");
   const auto tau_s = section.number(kBiasTau);
   if (tau_s && bias != BiasModel::kGaussMarkov) {
     section.fail("the bias correlation time needs bias = \"gauss_markov\"");
@@ -143,10 +134,7 @@ Outage read_outage(TomlSection& section) {
 }  // namespace
 
 NamedImuModel read_imu(TomlSection& section, const std::filesystem::path& folder) {
-  std::vector<std::string_view> classes;
-  for (const ImuClass c : kImuClasses) classes.push_back(name(c));
-  classes.push_back(kMems);
-  const auto by_class = section.choice("class", classes);
+  const auto by_class = section.text("class");
   const auto part = section.text("part");
   const auto file = section.text("model");
   const bool is_inline = section.has("accelerometer") || section.has("gyro");
@@ -156,7 +144,7 @@ NamedImuModel read_imu(TomlSection& section, const std::filesystem::path& folder
         "the catalogue), model = \"a file.toml\", or sections accelerometer and gyro of its own");
   }
   NamedImuModel imu;
-  if (by_class) imu = read_class(section, std::string(classes[*by_class]));
+  if (by_class) imu = read_class(section, *by_class);
   if (part) imu = read_part(section, *part);
   if (file) imu = read_model_file(section, folder, *file);
   if (is_inline) imu = {"scene's own", read_imu_model(section)};
@@ -214,7 +202,7 @@ InitialSigma read_initial(TomlSection& section) {
 
 ErrorLimit read_limit(TomlSection& section) {
   ErrorLimit limit;
-  limit.metric = chosen(section, "metric", kHorizontalMetrics).value_or(limit.metric);
+  limit.metric = section.choice<HorizontalMetric>("metric").value_or(limit.metric);
   set(section, kLimit, limit.limit_m);
   set(section, kLast, limit.last_s);
   return limit;

@@ -196,8 +196,7 @@ Trajectory read_recorded(TomlSection& section, const std::filesystem::path& fold
   return trajectory;
 }
 
-constexpr std::array<std::string_view, 7> kTypes{"static", "straight",  "circle",  "square_loop",
-                                                 "car",    "waypoints", "recorded"};
+// In the order of TrajectoryKind.
 constexpr std::array kEndless{&read_static, &read_straight, &read_circle, &read_square_loop,
                               &read_car};
 
@@ -205,10 +204,11 @@ constexpr std::array kEndless{&read_static, &read_straight, &read_circle, &read_
 
 Trajectory read_trajectory(TomlSection& section, const std::filesystem::path& folder,
                            std::optional<double> duration_s) {
-  const std::size_t type = section.required(section.choice("type", kTypes));
-  if (kTypes[type] == "waypoints") return read_waypoints(section, duration_s);
-  if (kTypes[type] == "recorded") return read_recorded(section, folder, duration_s);
-  return kEndless[type](section, duration_s.value_or(kDefaultDurationS));
+  const auto kind = section.required(section.choice<TrajectoryKind>("type"));
+  if (kind == TrajectoryKind::kWaypoints) return read_waypoints(section, duration_s);
+  if (kind == TrajectoryKind::kRecorded) return read_recorded(section, folder, duration_s);
+  return kEndless.at(static_cast<std::size_t>(kind))(section,
+                                                     duration_s.value_or(kDefaultDurationS));
 }
 
 }  // namespace leeway::sim

@@ -15,18 +15,6 @@ TriadErrorModel wandering(TriadErrorModel triad, double tau_s) {
 
 }  // namespace
 
-std::string_view name(BiasModel model) {
-  return model == BiasModel::kConstant ? "constant" : "gauss_markov";
-}
-
-BiasModel bias_model_from_name(std::string_view wanted) {
-  for (const BiasModel model : kBiasModels) {
-    if (name(model) == wanted) return model;
-  }
-  throw Error("bias model '" + std::string(wanted) +
-              "' is unknown: accepted are constant, gauss_markov");
-}
-
 BiasModel bias_model_of(const ImuErrorModel& model) {
   const bool drifts = model.accelerometer.in_run.sigma > 0.0 || model.gyro.in_run.sigma > 0.0;
   return drifts ? BiasModel::kGaussMarkov : BiasModel::kConstant;

@@ -7,36 +7,15 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
-namespace {
-
-void require(bool ok, const std::string& field, const auto& value, const char* range) {
-  if (ok) return;
-  std::ostringstream message;
-  message << "GNSS simulator: " << field << " is " << value << ", must be " << range;
-  throw Error(message.str());
-}
-
-void require_non_negative(const std::string& field, const Eigen::Vector3d& value) {
-  require(value.allFinite() && (value.array() >= 0.0).all(), field, value.transpose(),
-          "finite and >= 0");
-}
-
-}  // namespace
 
 void validate(const GnssErrorModel& model) {
-  require_non_negative("position_sigma_n_m", model.position_sigma_n_m);
-  require_non_negative("velocity_sigma_n_mps", model.velocity_sigma_n_mps);
-  require_non_negative("correlated_sigma_n_m", model.correlated_sigma_n_m);
-  require((model.velocity_sigma_n_mps.array() > 0.0).all(), "velocity_sigma_n_mps",
-          model.velocity_sigma_n_mps.transpose(), "> 0");
+  validate_fields("GNSS simulator", model);
   const Eigen::Vector3d total_m = model.position_sigma_n_m + model.correlated_sigma_n_m;
-  require((total_m.array() > 0.0).all(), "position_sigma_n_m + correlated_sigma_n_m",
-          total_m.transpose(), "> 0");
-  require(model.correlation_time_s > 0.0, "correlation_time_s", model.correlation_time_s, "> 0");
-  require(model.lever_arm_b_m.allFinite(), "lever_arm_b_m", model.lever_arm_b_m.transpose(),
-          "finite");
+  require("GNSS simulator", "position_sigma_n_m + correlated_sigma_n_m", total_m.minCoeff(),
+          kPositive);
 }
 
 GnssSimulator::GnssSimulator(const Trajectory& trajectory, const GnssErrorModel& model,
@@ -48,8 +27,8 @@ GnssSimulator::GnssSimulator(const Trajectory& trajectory, const GnssErrorModel&
 }
 
 void GnssSimulator::advance_correlated_error(double t_s) {
-  require(std::isfinite(t_s) && (!last_s_ || t_s > *last_s_), "time", t_s,
-          "finite and later than that of the fix before");
+  const double after_s = last_s_.value_or(kFinite.low);
+  require("GNSS simulator", "time of a fix", t_s, {.low = after_s, .above_low = true});
   if (last_s_) {
     const GaussMarkovStep step =
         discretize({.sigma = 1.0, .tau_s = model_.correlation_time_s}, t_s - *last_s_);

@@ -66,26 +66,6 @@ double DatasheetValue::si() const {
   return meaning == Meaning::kAllanMinimum ? value / kAllanPeak : value;
 }
 
-std::string_view name(Triad triad) { return triad == Triad::kGyro ? "gyro" : "accelerometer"; }
-
-std::string_view name(ModelField field) {
-  constexpr std::array<std::string_view, 7> kNames{
-      "bias_sigma",  "in_run_sigma",       "in_run_tau",         "noise",
-      "scale_sigma", "misalignment_sigma", "g_sensitivity_sigma"};
-  return kNames[static_cast<std::size_t>(field)];
-}
-
-std::string_view name(Meaning meaning) {
-  constexpr std::array<std::string_view, 4> kNames{"", "maximum", "Allan minimum", "assumed"};
-  return kNames[static_cast<std::size_t>(meaning)];
-}
-
-std::string_view name(Grade grade) {
-  constexpr std::array<std::string_view, 4> kNames{"consumer", "industrial", "tactical",
-                                                   "navigation"};
-  return kNames[static_cast<std::size_t>(grade)];
-}
-
 const ImuPart& imu_part(std::string_view wanted) {
   std::vector<std::string_view> names;
   for (const ImuPart& part : imu_parts()) {

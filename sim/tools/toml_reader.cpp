@@ -11,8 +11,11 @@
 namespace leeway::sim {
 namespace {
 
-// Converting a limit to the unit of a key and back may cost an ulp or two.
-constexpr double kRounding = 1e-12;
+/// Converting a limit to the unit of a key and back may cost an ulp or two.
+bool contain(const Range& limits, double si) {
+  constexpr double kRounding = 1e-12;
+  return limits.contains(si * (1.0 - kRounding)) || limits.contains(si * (1.0 + kRounding));
+}
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 80;
@@ -50,26 +53,19 @@ std::vector<std::string> keys_of(const Quantity& quantity) {
 }
 
 /// The limits in words, in a unit that is `si` in SI.
-std::string range_text(const Limits& limits, double value, double si) {
+std::string range_text(const Range& limits, double value, double si) {
   const double high = limits.high / si;
   const double low = limits.low / si;
-  if (limits.or_zero && std::abs(value) < low && (value > 0.0 || limits.either_sign)) {
+  if (limits.or_zero && value > 0.0 && value < low) {
     return "must be 0, or at least " + text_of(low) + " like that of a real sensor";
   }
-  const double least = limits.either_sign ? -high : limits.or_zero ? 0.0 : low;
-  return "must be a number from " + text_of(least) + " to " + text_of(high);
+  return "must be a number from " + text_of(limits.or_zero ? 0.0 : low) + " to " + text_of(high);
 }
 
 }  // namespace
 
 std::string likely_intent(const std::vector<std::string>& quoted_keys) {
   return quoted_keys.empty() ? "" : "; did you mean " + joined(quoted_keys, " or ") + "?";
-}
-
-bool Limits::contain(double value_si) const {
-  const double size = either_sign ? std::abs(value_si) : value_si;
-  if (or_zero && size == 0.0) return true;
-  return size >= low - kRounding * std::abs(low) && size <= high + kRounding * std::abs(high);
 }
 
 std::size_t TomlValue::size() const { return is_array() ? node_->as_array()->size() : 0; }
@@ -89,7 +85,7 @@ double TomlValue::number(std::string_view otherwise) const {
     fail("has another type than wanted: " + range_text(quantity_.limits, NAN, si) +
          std::string(otherwise));
   }
-  if (!quantity_.limits.contain(*value * si)) {
+  if (!contain(quantity_.limits, *value * si)) {
     const auto anything = [](double) { return true; };
     fail("is " + text_of(*value) + ": " + range_text(quantity_.limits, *value, si) +
          std::string(otherwise) + likely_intent(likely_keys(anything)));
@@ -104,7 +100,7 @@ std::vector<std::string> TomlValue::likely_keys(
   for (const Unit* unit : quantity_.units) {
     if (unit == nullptr || unit == unit_ || value == 0.0) continue;
     const double si = value * unit->si;
-    if (quantity_.limits.contain(si) && pleases(si))
+    if (contain(quantity_.limits, si) && pleases(si))
       keys.push_back(in_quotes(key_of(quantity_, unit)));
   }
   return keys;
@@ -142,12 +138,12 @@ void TomlValue::fail_at_key(const std::string& what) const {
 }
 
 const toml::node* TomlSection::declare(std::string_view key) {
-  declared_.push_back({key, {std::string(key)}});
+  declared_.push_back({std::string(key), {std::string(key)}});
   return table_.get(key);
 }
 
 std::optional<TomlValue> TomlSection::value(const Quantity& quantity) {
-  declared_.push_back({quantity.name, keys_of(quantity)});
+  declared_.push_back({std::string(quantity.name), keys_of(quantity)});
   std::optional<TomlValue> found;
   for (const auto& [key, node] : table_) {
     const auto& keys = declared_.back().keys;
@@ -200,15 +196,9 @@ std::optional<std::string> TomlSection::text(std::string_view key) {
   return node->as_string()->get();
 }
 
-std::optional<std::size_t> TomlSection::choice(std::string_view key,
-                                               std::span<const std::string_view> names) {
-  const std::optional<std::string> given = text(key);
-  if (!given) return {};
-  const auto found = std::find(names.begin(), names.end(), *given);
-  if (found == names.end()) {
-    fail_at(key, "is unknown: " + in_quotes(*given) + ": " + did_you_mean(*given, names));
-  }
-  return static_cast<std::size_t>(found - names.begin());
+void TomlSection::fail_unknown_word(std::string_view key, std::string_view given,
+                                    std::span<const std::string_view> accepted) const {
+  fail_at(key, "is unknown: " + in_quotes(given) + ": " + did_you_mean(given, accepted));
 }
 
 bool TomlSection::table(std::string_view key, const Reader& read) {

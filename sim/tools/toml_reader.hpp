@@ -23,31 +23,18 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/fields.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/units.hpp"
 
 namespace leeway::sim {
-
-/// Which numbers a quantity can be, in SI.
-struct Limits {
-  double low{};
-  double high{};
-  bool or_zero{false};      ///< zero too
-  bool either_sign{false};  ///< low and high bound the size, not the value
-
-  bool contain(double value_si) const;
-};
-
-constexpr Limits between(double low, double high) { return {low, high}; }
-constexpr Limits zero_or(double low, double high) { return {low, high, true}; }
-/// Zero, or of that size with either sign.
-constexpr Limits zero_or_size(double low, double high) { return {low, high, true, true}; }
 
 /// A quantity and the units it may be given in; its keys are name_unit, as in bias_sigma_mg.
 /// Without units the key is the name alone.
 struct Quantity {
   std::string_view name{};
   std::array<const Unit*, 4> units{};  ///< the rest null
-  Limits limits{};
+  Range limits{};                      ///< in SI
 };
 
 /// "; did you mean 'bias_sigma_mg' or 'bias_sigma_ug'?", or nothing for no keys.
@@ -107,8 +94,15 @@ class TomlSection {
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high);
   std::optional<bool> boolean(std::string_view key);
   std::optional<std::string> text(std::string_view key);
-  /// One of the names, by its index.
-  std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> names);
+  /// One of an enum's names.
+  template <NamedEnum Enum>
+  std::optional<Enum> choice(std::string_view key) {
+    const std::optional<std::string> given = text(key);
+    if (!given) return {};
+    const std::optional<Enum> value = from_name<Enum>(*given);
+    if (!value) fail_unknown_word(key, *given, kNames<Enum>);
+    return value;
+  }
 
   using Reader = std::function<void(TomlSection&)>;
   bool table(std::string_view key, const Reader& read);          ///< @returns whether it is there
@@ -126,13 +120,15 @@ class TomlSection {
 
   [[noreturn]] void fail(const std::string& what) const;  ///< at the head of the section
   [[noreturn]] void fail_at(std::string_view key, const std::string& what) const;
+  [[noreturn]] void fail_unknown_word(std::string_view key, std::string_view given,
+                                      std::span<const std::string_view> accepted) const;
 
   /// @throws Error when there is a key that nobody asked for. TomlDocument::read and table call it.
   void finish() const;
 
  private:
   struct Declared {
-    std::string_view name;            // of the quantity
+    std::string name;                 // of the quantity
     std::vector<std::string> keys{};  // one for each unit
   };
 

@@ -6,12 +6,12 @@
 #include <limits>
 #include <string>
 
-#include "leeway/earth/error.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/tools/random.hpp"
 #include "leeway/strapdown/strapdown.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -24,26 +24,16 @@ struct PaperCell {
   double time_to_100m_s;
 };
 
-// [seed Table 2], in the order of kImuClasses
+// [seed Table 2], in the order of kAll<ImuClass>
 constexpr std::array<PaperCell, 5> kTable2{
     {{0.9, 980.0}, {3.1, 580.0}, {10.2, 325.0}, {87.3, 110.0}, {867.7, 35.0}}};
 
-constexpr std::array<std::string_view, 3> kReadingNames{"paper", "paper_assumptions", "complete"};
-
-void require(bool ok, const char* field, double value, const char* range) {
-  if (!ok) {
-    throw Error(std::string("drift: ") + field + " is " + std::to_string(value) + ", must be " +
-                range);
-  }
-}
-
 void validate(const DriftConfig& c) {
-  require(std::abs(c.latitude_deg) <= 90.0, "latitude_deg", c.latitude_deg, "within +-90");
-  require(c.imu_rate_hz >= 1.0 && c.imu_rate_hz <= 1000.0, "imu_rate_hz", c.imu_rate_hz,
-          "1 to 1000");
-  require(c.trials >= 2 && c.trials <= 1000000, "trials", c.trials, "2 to 1000000");
-  require(c.max_time_s > kTableTimeS && c.max_time_s <= 1e5, "max_time_s", c.max_time_s,
-          "above 100 and at most 100000");
+  require("drift", "latitude_deg", c.latitude_deg, between(-90.0, 90.0));
+  require("drift", "imu_rate_hz", c.imu_rate_hz, between(1.0, 1000.0));
+  require("drift", "trials", c.trials, between(2.0, 1e6));
+  require("drift", "max_time_s", c.max_time_s,
+          {.low = kTableTimeS, .high = 1e5, .above_low = true});
 }
 
 /// A vehicle at rest: the start and the true increment, the same at every step.
@@ -163,25 +153,21 @@ DriftRow row_of(const DriftCurve& curve) {
 
 }  // namespace
 
-std::string_view name(DriftReading reading) {
-  return kReadingNames[static_cast<std::size_t>(reading)];
-}
-
 DriftStudy drift_study(const DriftConfig& config,
                        const std::function<void(double fraction)>& progress) {
   validate(config);
   const Rest rest(config);
-  constexpr std::size_t kCurvesPerClass = 1 + kRangeEnds.size();
+  constexpr std::size_t kCurvesPerClass = 1 + kAll<RangeEnd>.size();
   DriftStudy study;
-  study.curves.resize(kImuClasses.size() * kCurvesPerClass);
+  study.curves.resize(kAll<ImuClass>.size() * kCurvesPerClass);
   const std::size_t count = study.curves.size();
   parallel_for(
       count,
       [&](std::size_t k) {
-        const ImuClass imu = kImuClasses[k / kCurvesPerClass];
+        const ImuClass imu = kAll<ImuClass>[k / kCurvesPerClass];
         const std::size_t which = k % kCurvesPerClass;
         study.curves[k] = which == 0 ? paper_assumptions(rest, imu, config.max_time_s)
-                                     : complete(rest, imu, kRangeEnds[which - 1], config);
+                                     : complete(rest, imu, kAll<RangeEnd>[which - 1], config);
       },
       [&](std::size_t finished) {
         if (progress) progress(static_cast<double>(finished) / static_cast<double>(count));

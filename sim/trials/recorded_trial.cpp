@@ -5,8 +5,17 @@
 #include "leeway/sim/scene/receiver.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/random.hpp"
+#include "sim/trials/player.hpp"
 
 namespace leeway::sim {
+
+std::vector<TrialPlan::Fix> arriving_fixes(const TrialPlan& plan) {
+  std::vector<TrialPlan::Fix> fixes = plan.fixes();
+  std::erase_if(fixes, [end = plan.increments().size()](const TrialPlan::Fix& fix) {
+    return fix.arrives >= end;
+  });
+  return fixes;
+}
 
 RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed) {
   const Scene& scene = plan.scene();
@@ -16,29 +25,30 @@ RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed) {
   trial.start = trial_start(plan, seed);
   trial.imu.reserve(plan.increments().size());
   trial.fixes.reserve(plan.fixes().size());
-  auto next = plan.fixes().begin();
-  const auto last = plan.fixes().end();
-  for (std::size_t k = 0; k < plan.increments().size(); ++k) {
-    trial.imu.push_back(sensor.measure(plan.increments()[k]));
-    if (next == last || next->arrives >= plan.increments().size()) continue;
-    const double t_s = to_seconds(trial.imu.back().time);
-    if (k == next->at) trial.fixes.push_back({k, next->arrives, receiver.fix_at(t_s), {}});
-    if (k != next->arrives) continue;
-    if (next->scored) {
-      Estimate& truth = trial.fixes.back().truth.emplace();
-      truth.nav = truth_at(scene.trajectory, t_s).nav;
-      truth.bias = {sensor.accelerometer_bias_mps2(), sensor.gyro_bias_radps()};
-    }
-    ++next;
-  }
+  const auto now_s = [&trial] { return to_seconds(trial.imu.back().time); };
+  play(
+      plan.increments().size(), 1, arriving_fixes(plan),
+      [&](std::size_t k) { trial.imu.push_back(sensor.measure(plan.increments()[k])); },
+      [&](const TrialPlan::Fix& fix) {
+        trial.fixes.push_back({fix.at, fix.arrives, receiver.fix_at(now_s()), {}});
+      },
+      [&](const TrialPlan::Fix& fix) {
+        if (!fix.scored) return;
+        Estimate& truth = trial.fixes.back().truth.emplace();
+        truth.nav = truth_at(scene.trajectory, now_s()).nav;
+        truth.bias = {sensor.accelerometer_bias_mps2(), sensor.gyro_bias_radps()};
+      });
   return trial;
 }
 
-bool fits(const TrialPlan& plan, int divider) {
+bool fits(const TrialPlan::Fix& fix, int divider) {
   const auto n = static_cast<std::size_t>(divider);
-  return std::all_of(plan.fixes().begin(), plan.fixes().end(), [n](const TrialPlan::Fix& fix) {
-    return (fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0;
-  });
+  return (fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0;
+}
+
+bool fits(const TrialPlan& plan, int divider) {
+  return std::all_of(plan.fixes().begin(), plan.fixes().end(),
+                     [divider](const TrialPlan::Fix& fix) { return fits(fix, divider); });
 }
 
 RecordedTrial at_lower_rate(const RecordedTrial& trial, int divider) {

@@ -28,12 +28,16 @@ struct RecordedTrial {
   std::vector<Fix> fixes{};
 };
 
+/// Fixes of a plan that arrive before its end.
+std::vector<TrialPlan::Fix> arriving_fixes(const TrialPlan& plan);
+
 /// What run_trial() of this seed feeds its filter. Fixes that arrive after the end are left out.
 /// @pre every fix of the plan arrives before the next one is valid.
 RecordedTrial record_trial(const TrialPlan& plan, std::uint64_t seed);
 
-/// Whether every fix is valid and arrives at the end of an increment at a rate lower by this
-/// divider.
+/// Whether a fix, or every fix, is valid and arrives at the end of an increment at a rate lower by
+/// this divider.
+bool fits(const TrialPlan::Fix& fix, int divider);
 bool fits(const TrialPlan& plan, int divider);
 
 /// The same sensor read less often: so many increments added to one, errors and all. Nothing is

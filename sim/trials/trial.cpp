@@ -10,6 +10,8 @@
 #include "leeway/sim/scene/receiver.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/random.hpp"
+#include "sim/trials/player.hpp"
+#include "sim/trials/recorded_trial.hpp"
 #include "sim/trials/trial_score.hpp"
 
 namespace leeway::sim {
@@ -35,11 +37,10 @@ const Scene& checked(const Scene& scene) {
 
 /// Fixes are valid, and arrive, at the end of what the filter takes for one increment.
 void require_step(const Scene& scene, const TrialPlan::Fix& fix) {
-  const auto n = static_cast<std::size_t>(scene.imu_divider);
-  if ((fix.at + 1) % n == 0 && (fix.arrives + 1) % n == 0) return;
-  refuse("imu_divider is " + std::to_string(n) + ", but a fix is valid at increment " +
-         std::to_string(fix.at + 1) + " and arrives at " + std::to_string(fix.arrives + 1) +
-         ": both must be multiples of it");
+  if (fits(fix, scene.imu_divider)) return;
+  refuse("imu_divider is " + std::to_string(scene.imu_divider) +
+         ", but a fix is valid at increment " + std::to_string(fix.at + 1) + " and arrives at " +
+         std::to_string(fix.arrives + 1) + ": both must be multiples of it");
 }
 
 Ekf started(const TrialPlan& plan, std::uint64_t seed) {
@@ -62,8 +63,9 @@ class Trial {
   TrialScore run();
 
  private:
+  void advance(std::size_t first, std::size_t count);
   void take_fix(const TrialPlan::Fix& fix);
-  void score(const Ekf& filter);
+  void score();
   void tell();
 
   const TrialPlan& plan_;
@@ -72,38 +74,38 @@ class Trial {
   Receiver receiver_;
   Ekf filter_;
   std::optional<Ekf> without_fix_{};  // the filter without the scored fix that is on its way
-  std::size_t arrives_{};             // when that fix does
   TrialScore score_{};
 };
 
 TrialScore Trial::run() {
-  const TrueIncrements& truth = plan_.increments();
-  auto next = plan_.fixes().begin();
   const auto divider = static_cast<std::size_t>(plan_.scene().imu_divider);
-  ImuIncrement inc;
-  for (std::size_t k = 0; k < truth.size() && score_.finite; ++k) {
-    append(inc, sensor_.measure(truth[k]));
-    if ((k + 1) % divider != 0) continue;
-    filter_.predict(inc);
-    if (without_fix_) without_fix_->predict(inc);
-    inc = ImuIncrement{};
-    if (without_fix_ && k == arrives_) {
-      score(*without_fix_);
-      without_fix_.reset();
-    }
-    if (next != plan_.fixes().end() && k == next->at) take_fix(*next++);
-  }
+  const auto while_finite = [this](auto&& call) {
+    return [this, call](const auto& event) {
+      if (score_.finite) call(event);
+    };
+  };
+  play(plan_.increments().size(), divider, plan_.fixes(),
+       while_finite([&](std::size_t k) { advance(k + 1 - divider, divider); }),
+       while_finite([&](const TrialPlan::Fix& fix) { take_fix(fix); }),
+       while_finite([&](const TrialPlan::Fix& fix) {
+         if (fix.scored) score();
+       }));
   if (!score_.finite) score_.diverged = true;
   return score_;
 }
 
+void Trial::advance(std::size_t first, std::size_t count) {
+  ImuIncrement inc;
+  for (std::size_t k = first; k < first + count; ++k) {
+    append(inc, sensor_.measure(plan_.increments()[k]));
+  }
+  filter_.predict(inc);
+  if (without_fix_) without_fix_->predict(inc);
+}
+
 void Trial::take_fix(const TrialPlan::Fix& fix) {
   if (observer_) tell();
-  if (fix.scored && fix.arrives == fix.at) score(filter_);
-  if (fix.scored && fix.arrives > fix.at) {
-    without_fix_ = filter_;
-    arrives_ = fix.arrives;
-  }
+  if (fix.scored) without_fix_ = filter_;
   const UpdateOutcome report =
       filter_.update(receiver_.fix_at(to_seconds(filter_.estimate().nav.time)));
   if (report.outcome == UpdateOutcome::Outcome::kGated) ++score_.gated;
@@ -119,12 +121,14 @@ void Trial::take_fix(const TrialPlan::Fix& fix) {
   }
 }
 
-void Trial::score(const Ekf& filter) {
+void Trial::score() {
+  const Estimate& estimate = without_fix_->estimate();
   Estimate truth;
-  truth.nav = truth_at(plan_.scene().trajectory, to_seconds(filter.estimate().nav.time)).nav;
+  truth.nav = truth_at(plan_.scene().trajectory, to_seconds(estimate.nav.time)).nav;
   truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
-  const ErrorMatrix P = filter.covariance();
-  score_epoch(score_, truth, filter.estimate(), &P);
+  const ErrorMatrix P = without_fix_->covariance();
+  score_epoch(score_, truth, estimate, &P);
+  without_fix_.reset();
 }
 
 void Trial::tell() {

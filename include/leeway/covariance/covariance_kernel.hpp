@@ -8,6 +8,7 @@
 
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/covariance/transition.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/measurement.hpp"
 #include "leeway/model/process_noise.hpp"
@@ -20,6 +21,7 @@ enum class KernelForm {
   kSymmetric,  ///< blocks of Phi, symmetric P (default)
   kUd,         ///< P = U D U^T
 };
+constexpr auto names(KernelForm) { return std::array{"dense", "symmetric", "ud"}; }
 
 /// How the dense and the symmetric kernel take a measurement.
 enum class UpdateForm {
@@ -27,9 +29,11 @@ enum class UpdateForm {
   kJoseph,  ///< (I - K h) P (I - K h)^T + K K^T, row by row (default)
   kBatch,   ///< all rows at once, by the Cholesky factor of the innovation's covariance
 };
+constexpr auto names(UpdateForm) { return std::array{"simple", "joseph", "batch"}; }
 
 /// What a kernel computes in, for programs that choose: long double is for references.
 enum class Precision { kFloat, kDouble };
+constexpr auto names(Precision) { return std::array{"float", "double"}; }
 
 template <class Scalar>
 using CovarianceMatrix = Eigen::Matrix<Scalar, kErrorStates, kErrorStates>;

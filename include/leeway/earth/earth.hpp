@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "leeway/earth/names.hpp"
+
 namespace leeway {
 
 /// WGS-84 defining parameters: NGA.STND.0036 (2014), table 3.1.
@@ -30,38 +32,40 @@ struct Geodetic {
   double height_m{};
 };
 
-/// Geodetic to ECEF by GeographicLib::Geocentric; rounding error below 2e-9 m near the Earth.
+/// ECEF coordinates (m) of a geodetic position; rounding error below 2e-9 m near the Earth.
+/// Source: GeographicLib::Geocentric.
 Eigen::Vector3d ecef_from_geodetic(const Geodetic& position);
 
-/// ECEF to geodetic by GeographicLib::Geocentric; error below 7e-9 m for heights of -5000 km to
-/// 5000 km (Karney 2011, section 3). Longitude in [-pi, pi].
+/// Geodetic position of ECEF coordinates (m); longitude in [-pi, pi]. Error below 7e-9 m for
+/// heights of -5000 km to 5000 km. Source: GeographicLib::Geocentric; Karney (2011), section 3.
 Geodetic geodetic_from_ecef(const Eigen::Vector3d& r_e_m);
 
-/// C_en: columns are north, east and down at the position, in ECEF. At the poles north is the
-/// limit along the meridian of the given longitude.
+/// Rotation C_en from north-east-down to ECEF: its columns are north, east and down at the
+/// position. At the poles north is the limit along the meridian of the given longitude.
 Eigen::Matrix3d ned_to_ecef(const Geodetic& position);
 
-/// Its last column: the unit vector down, in ECEF.
+/// Unit vector down at r_e (m), in ECEF: the last column of C_en.
 Eigen::Vector3d down_e_at(const Eigen::Vector3d& r_e_m);
 
-/// How much of the Earth's gravity a strapdown models.
+/// Model of the Earth's gravity in a strapdown.
 enum class GravityModel {
   kConstant,  ///< 9.80665 m/s^2 along the ellipsoid's normal; within 0.027 m/s^2 at height 0 and
               ///< 0.06 m/s^2 from -10 to 10 km
   kJ2,        ///< central term and J2; within 1.2e-4 m/s^2 (12 ug) from -10 km up
   kNormal,    ///< the exact normal field; within 1.5e-14 m/s^2, rounding included, from -10 km up
 };
+constexpr auto names(GravityModel) { return std::array{"constant", "j2", "normal"}; }
 
-/// Gravity in ECEF, m/s^2, at r_e (m). @pre 6.3e6 < |r_e|.
-/// Source: Heiskanen and Moritz, Physical Geodesy, (2-92) for the zonal coefficients; the normal
-/// field is their series to degree 12, whose first term left out is below 1e-15 m/s^2.
+/// Gravity at r_e (m), in ECEF, m/s^2; its error is that of the model. @pre 6.3e6 < |r_e|.
+/// The normal field is a zonal series to degree 12; the first term left out is below 1e-15 m/s^2.
+/// Source: Heiskanen and Moritz, Physical Geodesy, (2-92).
 template <GravityModel model>
 Eigen::Vector3d gravity_e(const Eigen::Vector3d& r_e_m);
 
-/// The same, the model chosen at run time.
+/// Gravity as above, by a model chosen at run time.
 Eigen::Vector3d gravity_e(GravityModel model, const Eigen::Vector3d& r_e_m);
 
-/// d gravity_e<kNormal> / d r_e, 1/s^2, symmetric; relative error below 1e-8.
+/// Gradient of the normal gravity in ECEF at r_e (m), 1/s^2: symmetric, relative error below 1e-8.
 Eigen::Matrix3d gravity_gradient_e(const Eigen::Vector3d& r_e_m);
 
 }  // namespace leeway

@@ -3,7 +3,6 @@
 /// them.
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 
@@ -23,16 +22,17 @@ struct Unit {
   double si{1.0};                ///< one of it in SI
 };
 
-/// "4.5 deg/h = 4.5 / 3600 deg/s = 2.182e-05 rad/s"
+/// Conversion to SI in words: "4.5 deg/h = 4.5 / 3600 deg/s = 2.182e-05 rad/s".
 std::string working(double value, const Unit& unit);
 
 namespace units {
 
+/// Unit of the SI.
 constexpr Unit in_si(std::string_view symbol, std::string_view key) {
   return {symbol, key, 1.0, 1.0, symbol, symbol, 1.0};
 }
 
-/// One step from the base: times the first factor, over the second.
+/// Unit one step from its base: times the first factor, over the second.
 constexpr Unit step(std::string_view symbol, std::string_view key, double times, double over,
                     const Unit& base) {
   return {symbol, key, times, over, base.symbol, base.si_symbol, times * base.si / over};
@@ -91,45 +91,6 @@ inline constexpr Unit kRadpsPerG = step("rad/s/g", "radps_per_g", 1.0, kG, kRadp
 inline constexpr Unit kDegPerSPerG =
     step("deg/s/g", "deg_per_s_per_g", kRadPerDeg, 1.0, kRadpsPerG);
 inline constexpr Unit kDegPerHPerG = step("deg/h/g", "deg_per_h_per_g", 1.0, 3600.0, kDegPerSPerG);
-
-inline constexpr std::array kAll{kS,
-                                 kMs,
-                                 kMin,
-                                 kH,
-                                 kHz,
-                                 kM,
-                                 kCm,
-                                 kKm,
-                                 kMps,
-                                 kKmPerH,
-                                 kRad,
-                                 kMrad,
-                                 kDeg,
-                                 kArcsec,
-                                 kRatio,
-                                 kPercent,
-                                 kPpm,
-                                 kMps2,
-                                 kStandardG,
-                                 kMg,
-                                 kUg,
-                                 kMps2PerSqrtHz,
-                                 kGPerSqrtHz,
-                                 kMgPerSqrtHz,
-                                 kUgPerSqrtHz,
-                                 kMpsPerSqrtH,
-                                 kFtpsPerSqrtH,
-                                 kRadps,
-                                 kDegPerS,
-                                 kDegPerH,
-                                 kRadpsPerSqrtHz,
-                                 kDpsPerSqrtHz,
-                                 kMdpsPerSqrtHz,
-                                 kDegPerSqrtH,
-                                 kRadpsPerMps2,
-                                 kRadpsPerG,
-                                 kDegPerSPerG,
-                                 kDegPerHPerG};
 
 }  // namespace units
 }  // namespace leeway

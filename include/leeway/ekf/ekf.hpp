@@ -5,13 +5,17 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/covariance/covariance_track.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
+#include "leeway/covariance/transition.hpp"
+#include "leeway/earth/fields.hpp"
 #include "leeway/ekf/belief.hpp"
 #include "leeway/ekf/ekf_config.hpp"
 #include "leeway/ekf/fix_gate.hpp"
 #include "leeway/ekf/inertial_estimate.hpp"
 #include "leeway/ekf/update_outcome.hpp"
+#include "leeway/model/error_state.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/heading.hpp"
 #include "leeway/model/measurement.hpp"

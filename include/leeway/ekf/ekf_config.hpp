@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "leeway/earth/fields.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/process_noise.hpp"
 #include "leeway/sensors/imu_class.hpp"
@@ -30,11 +31,22 @@ struct EkfConfig {
   double covariance_interval_s{0.1};
   /// Whether the error of the position changes gravity in Phi.
   bool gravity_gradient{true};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"imu", c.imu}, Field{"biases", c.biases}, Field{"strapdown", c.strapdown},
+                   Field{"lever_arm_b_m", c.lever_arm_b_m, between(-1e3, 1e3)},
+                   Field{"gnss_correlation_s", c.gnss_correlation_s, between(0.0, 1e6)},
+                   Field{"gate_probability", c.gate_probability, zero_or(1e-100, 1.0 - 1e-16)},
+                   Field{"covariance_interval_s", c.covariance_interval_s, between(0.0, 10.0)},
+                   Field{"gravity_gradient", c.gravity_gradient});
+  }
 };
 
+/// @throws Error when a value is out of range: the field, its value, the allowed range.
+void validate(const EkfConfig& config);
+
 /// Whether filters of any kind can begin with this.
-/// @throws Error when the configuration or the estimate is invalid: the field, its value, the
-/// allowed range. The IMU's model is checked by process_noise().
+/// @throws Error as above, and when the estimate is not finite, not on the Earth or not a rotation.
 void validate(const EkfConfig& config, const Estimate& estimate);
 
 }  // namespace leeway

@@ -27,8 +27,9 @@ struct CsvColumn {
   int decimals;  ///< 0 to 12 digits after the point, or one of the above
 };
 
-/// Writes `path`.partial and renames it to `path` on close(). Destroyed without close() it leaves
-/// neither. gzip when the name ends in .gz. NaN and infinities are written as "nan" and "inf".
+/// Writer of a CSV file, gzip when the name ends in .gz. It writes `path`.partial and renames it to
+/// `path` on close(); destroyed without close() it leaves neither. NaN and infinities are written
+/// as "nan" and "inf".
 class CsvWriter {
  public:
   /// The first column is the time, written to the nanosecond whatever its decimals.
@@ -38,7 +39,8 @@ class CsvWriter {
   CsvWriter(CsvWriter&&) noexcept;
   CsvWriter& operator=(CsvWriter&&) = delete;
 
-  /// One row. @throws Error when the count is not that of the columns or on a write failure.
+  /// Row of a time and the other columns' values.
+  /// @throws Error when the count is not that of the columns or on a write failure.
   void write(Time time, std::span<const double> values);
 
   /// Finishes the file. @throws Error when it cannot be written completely.

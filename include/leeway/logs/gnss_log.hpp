@@ -3,74 +3,56 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <optional>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
-#include "leeway/logs/log_summary.hpp"
+#include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 
 namespace leeway {
 
-/// Told from the content of the file.
-enum class GnssLogFormat {
-  /// CSV, columns found by name in any order, further columns ignored: t_s, lat_deg, lon_deg,
-  /// height_m (ellipsoidal), pos_std_n_m, pos_std_e_m, pos_std_d_m, and all or none of vn_mps,
-  /// ve_mps, vd_mps, vel_std_n_mps, vel_std_e_mps, vel_std_d_mps. A row with an empty or NaN
-  /// velocity field has no velocity.
-  kCsv,
-  /// Blanks between, no header: seconds of week, latitude and longitude (deg), height (m), standard
-  /// deviations north, east, down (m); then, or not, velocity and its deviations (m/s), NED.
-  kKfGins,
-  /// RTKLIB .pos: latitude, longitude, height (degrees or d m s) or x/y/z, with its covariances.
-  /// Its
-  /// time is GPS time since 1980-01-06; UTC and JST are converted with 18 leap seconds, right from
-  /// 2017-01-01, and earlier dates in them are out of range. Velocities without standard
-  /// deviations,
-  /// or with zeros for them, are not used. Where the printed correlations are rounded beyond a
-  /// positive definite matrix only its diagonal is used.
-  kRtklib,
-};
-
+/// How a GNSS log is read.
 struct GnssLogOptions {
   double position_sigma_scale{1.0};  ///< multiplies the log's standard deviations
   double velocity_sigma_scale{1.0};
   Duration time_offset{0};  ///< added to every time, to put the log on the time line of the IMU's
 };
 
-/// Streams a plain or gzip log in constant memory. A damaged line costs that line: unparsable, a
-/// number missing or not finite, a latitude beyond +-90 deg, a longitude beyond +-360 deg, a
-/// standard deviation not in (0, 1e5], a fix that is not usable (is_usable), a time that goes back,
-/// repeats or jumps ahead of the lines after it.
-class GnssLogReader {
+/// A reader of GNSS logs, plain or gzip, in constant memory. The layout is told from the content:
+///
+/// - "CSV": columns found by name in any order, further ones ignored: t_s, lat_deg, lon_deg,
+///   height_m (ellipsoidal), pos_std_n_m, pos_std_e_m, pos_std_d_m; and all or none of vn_mps,
+///   ve_mps, vd_mps, vel_std_n_mps, vel_std_e_mps, vel_std_d_mps. A row with an empty or NaN
+///   velocity field has no velocity.
+/// - "KF-GINS text": blanks between, no header: seconds of week, latitude and longitude (deg),
+///   height (m), standard deviations north, east, down (m); then, or not, velocity and its
+///   deviations (m/s), NED.
+/// - "RTKLIB .pos": latitude, longitude, height (degrees or d m s) or x/y/z, with covariances. Its
+///   time is GPS time since 1980-01-06. UTC and JST are converted with 18 leap seconds, right from
+///   2017-01-01; earlier dates in them are out of range. Velocities without standard deviations, or
+///   with zeros for them, are not used. Where the printed correlations are rounded beyond a
+///   positive definite matrix, only its diagonal is used.
+///
+/// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
+/// a latitude beyond +-90 deg or a longitude beyond +-360 deg. So does a standard deviation not in
+/// (0, 1e5] and a fix that is not usable (is_usable). So does a time that goes back, repeats or
+/// jumps ahead of the lines after it.
+class GnssLogReader : public LogReader<GnssFix> {
  public:
-  /// @throws Error when the file cannot be read, is empty, lacks columns (naming them), holds
-  /// something else than ellipsoidal WGS-84 positions (naming the RTKLIB option to change), or a
-  /// scale is not a positive number.
+  /// @throws Error when the file cannot be read, is empty or lacks columns (naming them), or a
+  /// scale is not a positive number. Also when positions are not ellipsoidal WGS-84, naming the
+  /// RTKLIB option to change.
   explicit GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options = {});
-  ~GnssLogReader();
-  GnssLogReader(GnssLogReader&&) noexcept;
-  GnssLogReader& operator=(GnssLogReader&&) noexcept;
-
-  /// The next usable fix, later than the one before; nothing at the end.
-  std::optional<GnssFix> next();
-
-  GnssLogFormat format() const;
-  const LogSummary& report() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
-/// Writes the kCsv layout with velocity columns: exact numbers of the geodetic position, of the NED
-/// velocity and of the standard deviations; the layout has no correlations. Errors and the partial
-/// file are those of CsvWriter.
+/// Writer of the CSV layout with velocity columns. Geodetic position, NED velocity and standard
+/// deviations are exact; the layout has no correlations. Errors and the partial file are those of
+/// CsvWriter.
 class GnssLogWriter {
  public:
   explicit GnssLogWriter(const std::filesystem::path& path);
 
-  /// A fix without velocity has NaN there. @throws Error when the fix has no position.
+  /// Row of a fix; NaN where it has no velocity. @throws Error when it has no position.
   void write(const GnssFix& fix);
   void close() { csv_.close(); }
 

@@ -15,8 +15,8 @@ struct gzFile_s;  // zlib's, kept out of this header
 
 namespace leeway {
 
-/// Streams a file line by line without allocating for a line. Whether the file is gzip is told from
-/// its first bytes, not from its name. A UTF-8 byte order mark is skipped.
+/// Reader of a file line by line, without allocating for a line. Whether the file is gzip is told
+/// from its first bytes, not from its name. A UTF-8 byte order mark is skipped.
 class LineReader {
  public:
   /// Longer lines are no text log: see overlong().
@@ -32,7 +32,7 @@ class LineReader {
   /// Makes next() deliver the line it just delivered again. @pre next() delivered one.
   void unread();
 
-  /// The line just delivered was longer than kMaxLineBytes: its rest is skipped.
+  /// Whether the line just delivered was longer than kMaxLineBytes: its rest is skipped.
   bool overlong() const { return overlong_; }
 
   /// Number of the line just delivered, from 1; 0 before the first.

@@ -6,12 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
-/// Why a line was not used.
+/// Reasons for which a line is not used.
 enum class LineDamage {
   kNotANumber,
   kMissingField,
@@ -22,11 +23,15 @@ enum class LineDamage {
   kOutOfRange,
   kTooLong,  ///< LineReader::kMaxLineBytes
 };
-inline constexpr std::size_t kLineDamageCount = 8;
+constexpr auto names(LineDamage) {
+  return std::array{"not a number",   "missing field", "not finite",
+                    "time goes back", "time repeated", "time jumps ahead of the lines after it",
+                    "out of range",   "line too long"};
+}
+inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 
-std::string_view name(LineDamage reason);
-
-/// A damaged line costs that line, not the log.
+/// Counts of a log's lines and records, and its damaged lines by reason. A damaged line costs that
+/// line, not the log.
 struct LogSummary {
   static constexpr std::size_t kMaxMessages = 10;
 

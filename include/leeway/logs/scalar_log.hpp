@@ -3,12 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <string>
 
 #include "leeway/earth/time.hpp"
-#include "leeway/logs/log_summary.hpp"
+#include "leeway/logs/log_reader.hpp"
 
 namespace leeway {
 
@@ -26,24 +24,12 @@ struct ScalarColumns {
   double largest{};     ///< of the value's magnitude, and of the sigma
 };
 
-/// Streams a plain or gzip CSV, columns found by name in any order: t_s and the value's, and, or
-/// not, its standard deviation. A damaged line costs that line.
-class ScalarLogReader {
+/// Reader of CSV logs of one quantity, columns found by name in any order: t_s and the value's,
+/// and, or not, its standard deviation.
+class ScalarLogReader : public LogReader<ScalarRecord> {
  public:
   /// @throws Error when the file cannot be read, is empty or lacks columns (naming them).
   ScalarLogReader(const std::filesystem::path& path, const ScalarColumns& columns);
-  ~ScalarLogReader();
-  ScalarLogReader(ScalarLogReader&&) noexcept;
-  ScalarLogReader& operator=(ScalarLogReader&&) noexcept;
-
-  /// The next row, later than the one before; nothing at the end.
-  std::optional<ScalarRecord> next();
-
-  const LogSummary& report() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace leeway

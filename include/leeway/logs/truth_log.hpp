@@ -4,54 +4,44 @@
 
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include "leeway/logs/csv_writer.hpp"
-#include "leeway/logs/log_summary.hpp"
+#include "leeway/logs/log_reader.hpp"
 #include "leeway/strapdown/nav_state.hpp"
 
 namespace leeway {
 
-/// What a row holds; velocity and attitude are zero where it has none.
+/// Row of a truth log; velocity and attitude are zero where it has none.
 struct TruthRecord {
   NavStateNed nav{};
   bool has_velocity{false};
   bool has_attitude{false};
 };
 
-/// Streams a plain or gzip CSV, columns found by name in any order: t_s, lat_deg, lon_deg, height_m
-/// (ellipsoidal); all or none of vn_mps, ve_mps, vd_mps; all or none of roll_deg, pitch_deg,
-/// yaw_deg (body with respect to north-east-down). An empty or NaN field of a group means that the
-/// row does not have the group. A damaged line costs that line.
-class TruthLogReader {
+/// Reader of CSV truth logs, columns found by name in any order:
+///
+/// - t_s, lat_deg, lon_deg, height_m (ellipsoidal);
+/// - all or none of vn_mps, ve_mps, vd_mps;
+/// - all or none of roll_deg, pitch_deg, yaw_deg (body with respect to north-east-down).
+///
+/// An empty or NaN field of a group means that the row does not have the group.
+class TruthLogReader : public LogReader<TruthRecord> {
  public:
   /// @throws Error when the file cannot be read, is empty or lacks columns (naming them).
   explicit TruthLogReader(const std::filesystem::path& path);
-  ~TruthLogReader();
-  TruthLogReader(TruthLogReader&&) noexcept;
-  TruthLogReader& operator=(TruthLogReader&&) noexcept;
-
-  /// The next row, later than the one before; nothing at the end.
-  std::optional<TruthRecord> next();
-
-  const LogSummary& report() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
-/// A truth log at any time, in constant memory: asked in the order of time.
+/// Truth log at any time, in constant memory: asked in the order of time.
 class TruthTrack {
  public:
   static constexpr Duration kMaxGap = std::chrono::seconds{1};
 
   explicit TruthTrack(TruthLogReader reader);
 
-  /// Linear in latitude, longitude, height, velocity and the shorter way of each Euler angle (not
-  /// for pitch near +-90 deg): on a path of acceleration a, a dt^2 / 8 off. Nothing outside the
-  /// log, or between rows more than kMaxGap apart.
+  /// Record at t, linear between rows: a dt^2 / 8 off on a path of acceleration a. Euler angles go
+  /// the shorter way, which is wrong for pitch near +-90 deg. Nothing outside the log, or between
+  /// rows more than kMaxGap apart.
   /// @throws Error when t is before the t of the call before.
   std::optional<TruthRecord> interpolate(Time t);
 
@@ -64,12 +54,13 @@ class TruthTrack {
   Time last_t_{Time::min()};
 };
 
-/// Writes all columns: every number is exact. Errors and the partial file are those of CsvWriter.
+/// Writer of all columns: every number is exact. Errors and the partial file are those of
+/// CsvWriter.
 class TruthLogWriter {
  public:
   explicit TruthLogWriter(const std::filesystem::path& path);
 
-  /// A group that the record does not have is NaN.
+  /// Row of a record; a group that it does not have is NaN.
   void write(const TruthRecord& record);
   void close() { csv_.close(); }
 

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <string_view>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 
 namespace leeway {
@@ -16,14 +15,7 @@ enum class HorizontalMetric {
   kR95,   ///< the radius that 95 % of the errors stay within; 1.73 DRMS when N and E are alike
   kAxis,  ///< 1 sigma of the worse of north and east
 };
-
-inline constexpr std::array kHorizontalMetrics{HorizontalMetric::kDrms, HorizontalMetric::kR95,
-                                               HorizontalMetric::kAxis};
-
-std::string_view name(HorizontalMetric metric);
-
-/// The metric of that name. @throws Error listing the known names.
-HorizontalMetric horizontal_metric_from_name(std::string_view wanted);
+constexpr auto names(HorizontalMetric) { return std::array{"drms", "r95", "axis"}; }
 
 /// North-east covariance (m^2) of the position error at r_e_m.
 /// @param P_rr_e_m2  covariance of dr_e in ECEF axes

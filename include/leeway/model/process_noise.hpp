@@ -2,8 +2,11 @@
 /// The white noise that drives the error state, from the error model of the IMU.
 #pragma once
 
+#include <array>
 #include <limits>
 
+#include "leeway/earth/fields.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
@@ -36,11 +39,18 @@ enum class BiasState {
   kConstant,    ///< as uncertain at the start, and constant
   kNone,        ///< no bias: its state stays zero, and certain
 };
+constexpr auto names(BiasState) {
+  return std::array{"modelled", "random-walk", "constant", "none"};
+}
 
 /// Choice of bias states by triad.
 struct BiasStates {
   BiasState accelerometer{BiasState::kModelled};
   BiasState gyro{BiasState::kModelled};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"accelerometer", c.accelerometer}, Field{"gyro", c.gyro});
+  }
 };
 
 /// Noise by which a filter follows the model. An in-run bias without a turn-on part is a

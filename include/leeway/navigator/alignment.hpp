@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "leeway/earth/fields.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
@@ -30,6 +31,18 @@ struct AlignmentConfig {
                                    ///< beyond its turn-on bias
   double min_level_s{1.0};         ///< a rest this long is enough to level
   double min_rest_s{3.0};          ///< a rest this long gives the gyro bias
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"heading_from_course", c.heading_from_course},
+                   Field{"min_speed_mps", c.min_speed_mps, kPositive},
+                   Field{"sideslip_rad", c.sideslip_rad, kPositive},
+                   Field{"tilt_floor_rad", c.tilt_floor_rad, kPositive},
+                   Field{"max_fix_interval_s", c.max_fix_interval_s, kPositive},
+                   Field{"rest_speed_mps", c.rest_speed_mps, kPositive},
+                   Field{"rest_turn_rad", c.rest_turn_rad, kPositive},
+                   Field{"min_level_s", c.min_level_s, kPositive},
+                   Field{"min_rest_s", c.min_rest_s, kPositive});
+  }
 };
 
 /// What an alignment found: a start for the filter.

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
@@ -36,6 +37,7 @@ struct Health {
   std::uint32_t realignments{0};  ///< of everything
 };
 
-std::string_view name(Health::State state);
-
+constexpr auto names(Health::State) {
+  return std::array{"aligning", "heading_open", "aligned", "coasting", "gating", "inconsistent"};
+}
 }  // namespace leeway

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
 /// The form of the bytes. Any change of what a snapshot holds changes it.
-inline constexpr std::uint32_t kSnapshotVersion = 3;
+inline constexpr std::uint32_t kSnapshotVersion = 4;
 
 /// What became of an attempt to restore. Anything but kRestored changes nothing.
 enum class Restore : std::uint8_t {
@@ -19,7 +20,9 @@ enum class Restore : std::uint8_t {
   kWrongSize,           ///< cut off, or more than a snapshot
   kDamaged,             ///< the checksum does not fit
 };
-
-std::string_view name(Restore outcome);
+constexpr auto names(Restore) {
+  return std::array{"restored",   "not a snapshot", "other version", "other configuration",
+                    "wrong size", "damaged"};
+}
 
 }  // namespace leeway

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "leeway/earth/fields.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/sensors/imu.hpp"
 
@@ -21,6 +22,14 @@ struct StandstillConfig {
   /// slowdown is as quiet as a rest.
   double acceleration_mps2{0.2};
   double speed_mps{0.3};  ///< largest speed, three sigma of the filter's velocity beyond
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"gyro_std_radps", c.gyro_std_radps, kPositive},
+                   Field{"force_std_mps2", c.force_std_mps2, kPositive},
+                   Field{"turn_radps", c.turn_radps, kPositive},
+                   Field{"acceleration_mps2", c.acceleration_mps2, kPositive},
+                   Field{"speed_mps", c.speed_mps, kPositive});
+  }
 };
 
 /// Mean and spread of the IMU over a block of time.

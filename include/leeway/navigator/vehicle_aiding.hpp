@@ -2,6 +2,7 @@
 /// What is known of a vehicle without asking a receiver: that it stands, that it does not slide.
 #pragma once
 
+#include "leeway/earth/fields.hpp"
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/standstill.hpp"
@@ -40,6 +41,27 @@ struct VehicleConfig {
 
   /// Whether a part that is on depends on the vehicle's parameters.
   bool uses_parameters() const { return non_holonomic || odometer || barometer; }
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"zero_velocity", c.zero_velocity},
+                   Field{"zero_angular_rate", c.zero_angular_rate},
+                   Field{"non_holonomic", c.non_holonomic}, Field{"odometer", c.odometer},
+                   Field{"barometer", c.barometer}, Field{"standstill", c.standstill},
+                   Field{"rest_sigma_mps", c.rest_sigma_mps, kPositive},
+                   Field{"rest_turn_sigma_radps", c.rest_turn_sigma_radps, kPositive},
+                   Field{"min_speed_mps", c.min_speed_mps, kPositive},
+                   Field{"right_sigma_mps", c.right_sigma_mps, kPositive},
+                   Field{"right_sigma_m", c.right_sigma_m, kNotNegative},
+                   Field{"down_sigma_m2ps2", c.down_sigma_m2ps2, kPositive},
+                   Field{"rear_axle_x_m", c.rear_axle_x_m, between(-100.0, 100.0)},
+                   Field{"rear_axle_sigma_m", c.rear_axle_sigma_m, kNotNegative},
+                   Field{"mount_sigma_rad", c.mount_sigma_rad, kNotNegative},
+                   Field{"mount_walk_rad_per_sqrt_s", c.mount_walk_rad_per_sqrt_s, kNotNegative},
+                   Field{"odometer_scale_sigma", c.odometer_scale_sigma, kNotNegative},
+                   Field{"odometer_walk_per_sqrt_s", c.odometer_walk_per_sqrt_s, kNotNegative},
+                   Field{"height_offset_sigma_m", c.height_offset_sigma_m, kNotNegative},
+                   Field{"height_walk_m_per_sqrt_s", c.height_walk_m_per_sqrt_s, kNotNegative});
+  }
 };
 
 /// @throws Error when a value is out of range.

@@ -4,7 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
+
+#include "leeway/earth/names.hpp"
 
 namespace leeway {
 
@@ -27,9 +28,12 @@ enum class Verdict : std::uint8_t {
   kImplausible,  ///< beyond what the sensor can measure, or not a covariance
   kOverflow,     ///< more measurements wait than there is room for
 };
+constexpr auto names(Verdict) {
+  return std::array{"accepted",   "aligning", "fused",      "gated",        "reset",
+                    "gap",        "late",     "duplicate",  "out_of_order", "future",
+                    "clock_jump", "unused",   "not_finite", "implausible",  "overflow"};
+}
 
-inline constexpr std::size_t kVerdicts = 15;
-
-std::string_view name(Verdict verdict);
+inline constexpr std::size_t kVerdicts = kAll<Verdict>.size();
 
 }  // namespace leeway

@@ -15,7 +15,7 @@ struct GnssPosition {
   Eigen::Vector3d r_e_m{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d R_e_m2{Eigen::Matrix3d::Identity()};
 
-  /// From geodetic coordinates and a covariance in north-east-down axes.
+  /// Position from geodetic coordinates and a covariance in north-east-down axes.
   static GnssPosition from_geodetic(const Geodetic& position, const Eigen::Matrix3d& R_n_m2);
 };
 
@@ -24,7 +24,7 @@ struct GnssVelocity {
   Eigen::Vector3d v_e_mps{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d R_e_m2ps2{Eigen::Matrix3d::Identity()};
 
-  /// From north-east-down components at a place and a covariance in the same axes.
+  /// Velocity from north-east-down components at a place and a covariance in the same axes.
   static GnssVelocity from_ned(const Geodetic& place, const Eigen::Vector3d& v_n_mps,
                                const Eigen::Matrix3d& R_n_m2ps2);
 };
@@ -36,18 +36,19 @@ struct GnssFix {
   std::optional<GnssVelocity> velocity{};
 };
 
-/// The least standard deviation of a measurement, m or m/s, far below what any sensor claims: below
-/// it, squares and their inverses run out of range.
+/// The least standard deviation of a measurement, m or m/s. Below it squares and their inverses run
+/// out of range; no sensor claims so little.
 inline constexpr double kLeastSigma = 1e-12;
 
-/// True when the fix has a part, all numbers are finite, the position is within 100 km of the
-/// ellipsoid's surface, and every covariance is symmetric and positive definite, with at least
-/// kLeastSigma given the other axes. A fix that fails is bad data: count it, use nothing of it.
+/// Whether a fix can be used: it has a part, all numbers are finite and the position is within 100
+/// km of the ellipsoid's surface. Every covariance is symmetric and positive definite, with at
+/// least kLeastSigma given the other axes. A fix that fails is bad data: count it, use nothing of
+/// it.
 bool is_usable(const GnssFix& fix);
 
-/// True when the way between two fixes is what their velocities say, within what their covariances
-/// and an acceleration that changes by 3 m/s^2 in between explain in 99.9 % of all cases. False
-/// unless both are whole and at most 5 s apart. @pre is_usable() of both.
+/// Agreement of two fixes: the way between them is what their velocities say. It is judged by their
+/// covariances and an acceleration that changes by 3 m/s^2 in between, at 99.9 %. False unless both
+/// fixes are whole and at most 5 s apart. @pre is_usable() of both.
 bool agree(const GnssFix& earlier, const GnssFix& later);
 
 }  // namespace leeway

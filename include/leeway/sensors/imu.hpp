@@ -5,12 +5,13 @@
 #include <Eigen/Core>
 #include <utility>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/time.hpp"
 
 namespace leeway {
 
-/// Integrals over (time - dt, time], componentwise in the turning body axes: what an ideal
-/// rate-integrating sensor delivers, with no coning or sculling correction.
+/// Integrals over (time - dt, time], component by component in the turning body axes. An ideal
+/// rate-integrating sensor delivers them; they have no coning or sculling correction.
 struct ImuIncrement {
   Time time{};                                            ///< end of the interval
   double dt_s{};                                          ///< length, > 0
@@ -25,23 +26,24 @@ struct ImuSample {
   Eigen::Vector3d f_ib_b_mps2{Eigen::Vector3d::Zero()};
 };
 
-/// What a rate sample stands for. The choice matters: explicit Euler errs by 135 m on point samples
-/// and by 1.5 m on means, on the same 100 s drive.
+/// Meaning of a rate sample. The choice matters: on the same 100 s drive explicit Euler errs by 135
+/// m on point samples and by 1.5 m on means.
 enum class RateMeaning {
   kMean,       ///< mean over the interval that ends at the sample (MEMS with a low-pass filter)
   kPoint,      ///< value at its time; the increment is the trapezoid of two samples
   kPointHeld,  ///< value at its time, held until the next sample: the seed's explicit Euler
 };
+constexpr auto names(RateMeaning) { return std::array{"mean", "point", "held"}; }
 
 /// The increment between two consecutive samples. @pre from.time < to.time.
 ImuIncrement increment_between(const ImuSample& from, const ImuSample& to, RateMeaning meaning);
 
-/// The same sensor read less often: the later increment is added to the earlier one, component by
-/// component. @pre later.time - later.dt_s = sum.time, or sum is new.
+/// Sum of two increments, component by component: the same sensor read less often.
+/// @pre later.time - later.dt_s = sum.time, or sum is new.
 void append(ImuIncrement& sum, const ImuIncrement& later);
 
-/// Splits an increment at t, the rates taken as constant within it. Used to apply a fix at its own
-/// time. @pre inc.time - inc.dt_s < t < inc.time.
+/// Two parts of an increment, before and after t, the rates taken as constant within it. A fix can
+/// so be applied at its own time. @pre inc.time - inc.dt_s < t < inc.time.
 std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& inc, Time t);
 
 }  // namespace leeway

@@ -2,32 +2,22 @@
 /// The five IMU classes of [seed Table 1].
 #pragma once
 
-#include <array>
-#include <string_view>
-
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway {
 
 enum class ImuClass { kMarine, kAviation, kIntermediate, kTactical, kAutomotive };
+constexpr auto names(ImuClass) {
+  return std::array{"marine", "aviation", "intermediate", "tactical", "automotive"};
+}
 
-/// Where in a Table 1 range: its low end, geometric mean, or high end.
+/// Place in a Table 1 range: its low end, geometric mean, or high end.
 enum class RangeEnd { kLow, kMid, kHigh };
+constexpr auto names(RangeEnd) { return std::array{"low", "mid", "high"}; }
 
-inline constexpr std::array kImuClasses{ImuClass::kMarine, ImuClass::kAviation,
-                                        ImuClass::kIntermediate, ImuClass::kTactical,
-                                        ImuClass::kAutomotive};
-inline constexpr std::array kRangeEnds{RangeEnd::kLow, RangeEnd::kMid, RangeEnd::kHigh};
-
-std::string_view name(ImuClass c);
-std::string_view name(RangeEnd end);
-
-/// @throws Error listing the known names.
-ImuClass imu_class_from_name(std::string_view name);
-RangeEnd range_end_from_name(std::string_view name);
-
-/// Biases are random constants with the Table 1 drift as their 1-sigma; no scale errors. A bound
-/// given as "< x" is read as the range x/4 to x, one given as "> x" as x alone.
+/// Error model of a class. Biases are random constants with the Table 1 drift as their 1-sigma;
+/// there are no scale errors. A bound "< x" is read as the range x/4 to x, "> x" as x alone.
 ImuErrorModel imu_class_model(ImuClass c, RangeEnd end);
 
 /// The Table 1 class of each of the four quantities that the table has.
@@ -39,15 +29,18 @@ struct ImuClassification {
   ImuClass overall{};  ///< the worst of the four
 };
 
-/// A value belongs to the class whose range is nearest on a logarithmic scale, inside a range or
-/// not; where two are as near, to the better one. The drift is the 1-sigma bias at the start,
-/// turn-on and in-run together. A value of zero is marine.
+/// Classes of a model: of each value the one whose range is nearest on a logarithmic scale. Of two
+/// as near it is the better one; zero is marine. The drift is the 1-sigma bias at the start,
+/// turn-on and in-run together.
 ImuClassification classify(const ImuErrorModel& model);
 
-/// A car-grade MEMS part as a filter should see it while driving: turn-on bias 0.5 deg/s and
-/// 0.3 m/s^2; in-run drift 0.02 deg/s and 0.03 m/s^2 over 300 s; noise 0.3 deg/sqrt(h) and
-/// 0.1 m/s/sqrt(h), above a datasheet's to make room for scale factors and vibration. Better than
-/// the automotive class of Table 1 by 20 years of sensors, but for its bias at turn-on.
+/// Error model of a car-grade MEMS part, as a filter should see it while driving. Better than the
+/// automotive class of Table 1 by 20 years of sensors, but for its bias at turn-on:
+///
+/// - turn-on bias 0.5 deg/s and 0.3 m/s^2, 1 sigma;
+/// - in-run drift 0.01 deg/s and 0.005 m/s^2, 1 sigma, over 300 s;
+/// - noise 0.3 deg/sqrt(h) and 0.1 m/s/sqrt(h), above a datasheet's to make room for scale factors
+///   and vibration.
 ImuErrorModel automotive_mems_model();
 
 }  // namespace leeway

@@ -11,18 +11,18 @@
 
 namespace leeway {
 
-/// What a scheme leaves out of the motion, as the steady sensor error that does the same harm.
+/// Motion that a scheme leaves out, as the steady sensor error that does the same harm, body axes.
 struct LeftOut {
   Eigen::Vector3d rate_b_radps{Eigen::Vector3d::Zero()};
   Eigen::Vector3d force_b_mps2{Eigen::Vector3d::Zero()};
 };
 
 /// Means over the last kMeanS of the terms by which schemes of rising order differ: each is what
-/// the cheaper one leaves out. Of a vibration it is within 5 % for one-sample and 22 % for
-/// two-sample while increments resolve it, and a lower bound beyond. Motion near a multiple of the
-/// IMU's rate leaves no trace in increments: against that only a filter before the sampler helps.
-/// Allocates nothing. Source: Savage (1998), part 1 (47), part 2 (36), and the same
-/// expansion one increment further back. docs/theory/strapdown/integration_monitor.md.
+/// the cheaper one leaves out. Of a vibration that increments resolve it is within 5 % for
+/// one-sample and 22 % for two-sample; beyond that it is a lower bound. Motion near a multiple of
+/// the IMU's rate leaves no trace in increments: against that only a filter before the sampler
+/// helps. Allocates nothing. Source: Savage (1998), part 1 (47), part 2 (36), and the same
+/// expansion one increment further back; docs/theory/strapdown/integration_monitor.md.
 class IntegrationMonitor {
  public:
   static constexpr double kMeanS = 10.0;
@@ -34,11 +34,12 @@ class IntegrationMonitor {
   /// @pre inc.dt_s > 0.
   void push(const ImuIncrement& inc);
 
-  /// Zero in the first second. Of kRungeKutta4 what kTwoSample leaves out.
+  /// Means of what a scheme leaves out; zero in the first second. Of kRungeKutta4 it is what
+  /// kTwoSample leaves out.
   LeftOut left_out(Scheme scheme) const;
 
-  /// After the first second, false when what moves goes through fewer than six increments in a
-  /// period: then no scheme can be trusted.
+  /// Whether increments come at least six in a period of the motion; true in the first second. When
+  /// false, no scheme can be trusted.
   bool resolves_motion() const;
 
  private:

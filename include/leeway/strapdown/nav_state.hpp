@@ -19,7 +19,7 @@ struct NavState {
   Eigen::Vector3d r_e_m{Eigen::Vector3d::Zero()};           ///< ECEF position
 };
 
-/// The same state as people read it: geodetic, north-east-down, Euler angles.
+/// Navigation state as people read it: geodetic, north-east-down, Euler angles.
 struct NavStateNed {
   Time time{};
   Geodetic position{};
@@ -27,6 +27,7 @@ struct NavStateNed {
   EulerAngles attitude{};  ///< body with respect to north-east-down
 };
 
+/// State in ECEF, or as people read it; rounding alone, but where Euler angles are not unique.
 NavState nav_state_from_ned(const NavStateNed& ned);
 NavStateNed ned_from_nav_state(const NavState& state);
 

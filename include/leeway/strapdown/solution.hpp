@@ -9,7 +9,7 @@
 
 namespace leeway {
 
-/// Every sigma is one standard deviation as the filter estimates it.
+/// Solution at one time. Every sigma is one standard deviation, as the filter estimates it.
 struct Solution {
   NavState nav{};                                                 ///< of the IMU
   Eigen::Vector3d b_a_mps2{Eigen::Vector3d::Zero()};              ///< accelerometer bias, body axes

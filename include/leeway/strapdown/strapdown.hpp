@@ -7,13 +7,15 @@
 #include <array>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/earth/fields.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu.hpp"
 #include "leeway/strapdown/nav_state.hpp"
 
 namespace leeway {
 
-/// How one increment advances the state. Errors are those of a 100 s car drive at 100 Hz
-/// (docs/theory/strapdown/strapdown.md).
+/// Integration schemes: how one increment advances the state. Their errors on a 100 s car drive are
+/// in docs/theory/strapdown/strapdown.md.
 enum class Scheme {
   kExplicitEuler,      ///< the seed's (3)-(8): first order
   kSemiImplicitEuler,  ///< as the seed, but position from the new velocity: first order
@@ -26,12 +28,23 @@ enum class Scheme {
   kConing,       ///< one sample + coning alone of what two samples add
   kSculling,     ///< one sample + sculling and position curvature alone
 };
+constexpr auto names(Scheme) {
+  return std::array{"explicit-euler", "semi-implicit-euler", "trapezoid", "one-sample",
+                    "two-sample",     "runge-kutta-4",       "coning",    "sculling"};
+}
+/// What `leeway fuse --scheme` called kRungeKutta4 once.
+constexpr std::optional<Scheme> alias(Scheme, std::string_view word) {
+  return word == "rk4" ? std::optional(Scheme::kRungeKutta4) : std::nullopt;
+}
 
-/// Whether the Earth turns: rotation of the frame, which the attitude sees, and Coriolis.
+/// Terms of the Earth's rotation: the turn of the frame, which the attitude sees, and Coriolis.
 enum class EarthRotation { kOff, kOn, kTurnAlone, kCoriolisAlone };
+constexpr auto names(EarthRotation) {
+  return std::array{"still", "turning", "turn-alone", "coriolis-alone"};
+}
 
-/// The recent past that a scheme looks back on. It survives a correction of the state, and is
-/// forgotten by itself when the next increment does not follow the last one.
+/// Recent past that a scheme looks back on. It survives a correction of the state, and is forgotten
+/// by itself when the next increment does not follow the last one.
 struct ImuHistory {
   static constexpr int kLength = 4;
   std::array<ImuIncrement, kLength>
@@ -50,27 +63,32 @@ struct ImuHistory {
   NavState last{};
 };
 
-/// What a step saw on the way, for the error model of a filter.
+/// Motion over a step, for the error model of a filter.
 struct StrapdownStep {
   Eigen::Matrix3d C_eb_mean{Eigen::Matrix3d::Identity()};  ///< mean attitude over the step
   Eigen::Vector3d dv_f_e_mps{Eigen::Vector3d::Zero()};     ///< integral of specific force, in ECEF
 };
 
-/// Advances the state by one increment. @pre inc.dt_s > 0, inc.time - state.time = inc.dt_s.
+/// Step of the state over one increment. @pre inc.dt_s > 0, inc.time - state.time = inc.dt_s.
 template <Scheme scheme = Scheme::kTwoSample, GravityModel gravity = GravityModel::kNormal,
           EarthRotation rotation = EarthRotation::kOn>
 StrapdownStep strapdown_step(NavState& state, const ImuIncrement& inc, ImuHistory& history);
 
-/// The policies as values, for programs that choose at run time.
+/// Policies as values, for programs that choose at run time.
 struct StrapdownPolicy {
   Scheme scheme{Scheme::kTwoSample};
   GravityModel gravity{GravityModel::kNormal};
   EarthRotation rotation{EarthRotation::kOn};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"scheme", c.scheme}, Field{"gravity", c.gravity},
+                   Field{"rotation", c.rotation});
+  }
 };
 
 using StrapdownFunction = StrapdownStep (*)(NavState&, const ImuIncrement&, ImuHistory&);
 
-/// The one dispatch table from run-time values to the compile-time policies.
+/// Step of policies chosen at run time: strapdown_step() of the same policies.
 StrapdownFunction strapdown_function(const StrapdownPolicy& policy);
 
 }  // namespace leeway

@@ -3,11 +3,11 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kOffM = 100.0;  // the fix with the bad covariance is so far north
@@ -89,14 +89,15 @@ std::vector<AtlasCell> run_bad_covariance(const AtlasOptions& /*options*/) {
 }  // namespace
 
 AtlasScene bad_covariance() {
-  return {"bad-covariance",
-          "A fix with a covariance that is none",
-          "how far a fix 100 m off takes the estimate",
-          "m",
-          {0.01, 1.0,
-           "the fix must be refused or weigh nothing; a centimetre is below all that a filter "
-           "claims here, a metre is not"},
-          run_bad_covariance};
+  return {.place = 150,
+          .key = "bad-covariance",
+          .title = "A fix with a covariance that is none",
+          .figure = "how far a fix 100 m off takes the estimate",
+          .unit = "m",
+          .limits = {0.01, 1.0,
+                     "the fix must be refused or weigh nothing; a centimetre is below all that a "
+                     "filter claims here, a metre is not"},
+          .run = run_bad_covariance};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

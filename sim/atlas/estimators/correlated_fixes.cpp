@@ -1,11 +1,11 @@
 #include <cmath>
 
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kCorrelationS = 60.0;
@@ -58,14 +58,15 @@ std::vector<AtlasCell> run_correlated_fixes(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene correlated_fixes() {
-  return {"correlated-fixes",
-          "Correlated fixes taken for white",
-          "position error over its claimed sigma",
-          "",
-          {1.5, 2.5,
-           "of 1, by how much the mean over some minutes of a wandering error scatters; beyond 2.5 "
-           "sigma the claim of 95 % holds a third of the time"},
-          run_correlated_fixes};
+  return {.place = 70,
+          .key = "correlated-fixes",
+          .title = "Correlated fixes taken for white",
+          .figure = "position error over its claimed sigma",
+          .unit = "",
+          .limits = {1.5, 2.5,
+                     "of 1, by how much the mean over some minutes of a wandering error scatters; "
+                     "beyond 2.5 sigma the claim of 95 % holds a third of the time"},
+          .run = run_correlated_fixes};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

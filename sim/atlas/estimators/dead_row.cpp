@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/linear_response.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kRowPriorM = 10.0;
@@ -93,14 +93,15 @@ std::vector<AtlasCell> run_dead_row(const AtlasOptions& /*options*/) {
 }  // namespace
 
 AtlasScene dead_row() {
-  return {"dead-row",
-          "A measurement row that does nothing",
-          "worst factor between a variance after a fix and P R / (P + R)",
-          "",
-          {1.001, 2.0,
-           "the closed form holds to rounding, also in float; a variance twice too large is a row "
-           "of which half was lost"},
-          run_dead_row};
+  return {.place = 140,
+          .key = "dead-row",
+          .title = "A measurement row that does nothing",
+          .figure = "worst factor between a variance after a fix and P R / (P + R)",
+          .unit = "",
+          .limits = {1.001, 2.0,
+                     "the closed form holds to rounding, also in float; a variance twice too large "
+                     "is a row of which half was lost"},
+          .run = run_dead_row};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

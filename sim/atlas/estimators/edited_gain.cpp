@@ -3,12 +3,12 @@
 #include "filters/ekf/basic_ekf.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 #include "sim/atlas/watched_ekf.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kGainSettledS = 60.0;
@@ -100,12 +100,14 @@ std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene edited_gain() {
-  return {"edited-gain",
-          "A gain edited by hand",
-          "errors over claims: root of NEES over 15",
-          "",
-          {1.3, 2.0, "of 1, by how much few trials scatter; at 2 the claim of 95 % is one of 67 %"},
-          run_edited_gain};
+  return {.place = 20,
+          .key = "edited-gain",
+          .title = "A gain edited by hand",
+          .figure = "errors over claims: root of NEES over 15",
+          .unit = "",
+          .limits = {1.3, 2.0,
+                     "of 1, by how much few trials scatter; at 2 the claim of 95 % is one of 67 %"},
+          .run = run_edited_gain};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -2,11 +2,11 @@
 #include <string>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kBurstS = 10.0;
@@ -64,15 +64,15 @@ std::vector<AtlasCell> run_fix_bursts(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene fix_bursts() {
-  return {
-      "fix-bursts",
-      "Bursts of fixes with minutes between",
-      "horizontal error over its claimed sigma at the end of gaps",
-      "",
-      {1.5, 3.0,
-       "of 1, by how much a few dozen gaps scatter; at 3 a limit that is derived from the claim "
-       "is not kept"},
-      run_fix_bursts};
+  return {.place = 90,
+          .key = "fix-bursts",
+          .title = "Bursts of fixes with minutes between",
+          .figure = "horizontal error over its claimed sigma at the end of gaps",
+          .unit = "",
+          .limits = {1.5, 3.0,
+                     "of 1, by how much a few dozen gaps scatter; at 3 a limit that is derived "
+                     "from the claim is not kept"},
+          .run = run_fix_bursts};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -3,11 +3,11 @@
 #include <string>
 
 #include "leeway/covariance/transition.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/linear_response.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kBiasMps2 = 1e-4;
@@ -63,14 +63,15 @@ std::vector<AtlasCell> run_frozen_transition(const AtlasOptions& /*options*/) {
 }  // namespace
 
 AtlasScene frozen_transition() {
-  return {"frozen-transition",
-          "The transition matrix frozen over the fix interval",
-          "claimed over true position error by a body-frame bias, as a factor",
-          "",
-          {1.05, 1.5,
-           "a claim within 5 % is as good as the sigmas of the sensors are known; by half, and the "
-           "interval that it allows is wrong by a quarter"},
-          run_frozen_transition};
+  return {.place = 110,
+          .key = "frozen-transition",
+          .title = "The transition matrix frozen over the fix interval",
+          .figure = "claimed over true position error by a body-frame bias, as a factor",
+          .unit = "",
+          .limits = {1.05, 1.5,
+                     "a claim within 5 % is as good as the sigmas of the sensors are known; by "
+                     "half, and the interval that it allows is wrong by a quarter"},
+          .run = run_frozen_transition};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

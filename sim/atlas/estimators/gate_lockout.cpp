@@ -1,8 +1,8 @@
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kShockS = 60.0;       // for one second from here ..
@@ -35,14 +35,15 @@ std::vector<AtlasCell> run_gate_lockout(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene gate_lockout() {
-  return {"gate-lockout",
-          "A gate that refuses right fixes",
-          "RMS horizontal error before fixes, from a minute after the shock",
-          "m",
-          {8.0, 80.0,
-           "fixes of 2.5 m every second keep an unhurt filter within 3 sigma; ten times as much is "
-           "of no use on a road"},
-          run_gate_lockout};
+  return {.place = 100,
+          .key = "gate-lockout",
+          .title = "A gate that refuses right fixes",
+          .figure = "RMS horizontal error before fixes, from a minute after the shock",
+          .unit = "m",
+          .limits = {8.0, 80.0,
+                     "fixes of 2.5 m every second keep an unhurt filter within 3 sigma; ten times "
+                     "as much is of no use on a road"},
+          .run = run_gate_lockout};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

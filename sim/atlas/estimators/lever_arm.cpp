@@ -1,8 +1,8 @@
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kSpunUpS = 20.0;
@@ -41,14 +41,15 @@ std::vector<AtlasCell> run_lever_arm(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene lever_arm() {
-  return {"lever-arm",
-          "A lever arm ignored while spinning",
-          "RMS position error before fixes",
-          "m",
-          {0.2, 1.0,
-           "a second of MEMS after a fix of 2 cm is good to a decimetre or two; beyond 1 m the fix "
-           "is not used to a fiftieth of its worth"},
-          run_lever_arm};
+  return {.place = 130,
+          .key = "lever-arm",
+          .title = "A lever arm ignored while spinning",
+          .figure = "RMS position error before fixes",
+          .unit = "m",
+          .limits = {0.2, 1.0,
+                     "a second of MEMS after a fix of 2 cm is good to a decimetre or two; beyond 1 "
+                     "m the fix is not used to a fiftieth of its worth"},
+          .run = run_lever_arm};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

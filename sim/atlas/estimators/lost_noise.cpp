@@ -3,12 +3,12 @@
 
 #include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/watched_filter.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kStillRateHz = 1000.0;
@@ -96,14 +96,15 @@ std::vector<AtlasCell> run_lost_noise(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene lost_noise() {
-  return {"lost-noise",
-          "Process noise lost to rounding",
-          "heading variance that is missing or invented, over what the gyro noise brings",
-          "",
-          {0.1, 0.5,
-           "a tenth of the noise is 5 % of its sigma; without half of it, or with half more, the "
-           "noise that was configured is another one"},
-          run_lost_noise};
+  return {.place = 30,
+          .key = "lost-noise",
+          .title = "Process noise lost to rounding",
+          .figure = "heading variance that is missing or invented, over what the gyro noise brings",
+          .unit = "",
+          .limits = {0.1, 0.5,
+                     "a tenth of the noise is 5 % of its sigma; without half of it, or with half "
+                     "more, the noise that was configured is another one"},
+          .run = run_lost_noise};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

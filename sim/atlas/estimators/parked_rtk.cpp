@@ -1,8 +1,8 @@
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 Scene parked(double duration_s) {
@@ -26,14 +26,15 @@ std::vector<AtlasCell> run_parked_rtk(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene parked_rtk() {
-  return {"parked-rtk",
-          "Parked with RTK fixes: the heading's variance collapses",
-          "heading error over its claimed sigma at the end",
-          "",
-          {1.5, 3.0,
-           "of 1, by how much two dozen trials scatter; a claim of a third of the error keeps a "
-           "later filter from learning the heading"},
-          run_parked_rtk};
+  return {.place = 40,
+          .key = "parked-rtk",
+          .title = "Parked with RTK fixes: the heading's variance collapses",
+          .figure = "heading error over its claimed sigma at the end",
+          .unit = "",
+          .limits = {1.5, 3.0,
+                     "of 1, by how much two dozen trials scatter; a claim of a third of the error "
+                     "keeps a later filter from learning the heading"},
+          .run = run_parked_rtk};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -1,8 +1,8 @@
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kVaguePriorM = 1000.0;
@@ -32,14 +32,15 @@ std::vector<AtlasCell> run_positive_definiteness(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene positive_definiteness() {
-  return {"positive-definiteness",
-          "A kilometre of prior, a centimetre of fix",
-          "RMS position error before fixes, over the sigma of a fix",
-          "",
-          {3.0, 100.0,
-           "a second after a fix the error is that of fix and filter together, within 3 sigma of "
-           "the fix; at 100 sigma the fixes are as good as unused"},
-          run_positive_definiteness};
+  return {.place = 10,
+          .key = "positive-definiteness",
+          .title = "A kilometre of prior, a centimetre of fix",
+          .figure = "RMS position error before fixes, over the sigma of a fix",
+          .unit = "",
+          .limits = {3.0, 100.0,
+                     "a second after a fix the error is that of fix and filter together, within 3 "
+                     "sigma of the fix; at 100 sigma the fixes are as good as unused"},
+          .run = run_positive_definiteness};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

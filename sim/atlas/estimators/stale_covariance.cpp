@@ -3,11 +3,11 @@
 #include <string>
 
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kSettleS = 300.0;
@@ -63,14 +63,15 @@ std::vector<AtlasCell> run_stale_covariance(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene stale_covariance() {
-  return {"stale-covariance",
-          "One fix after an hour of coasting",
-          "horizontal error after the first late fix",
-          "m",
-          {4.0, 100.0,
-           "three sigma of a 1 m fix and a second of motion; at 100 m the fix did not bring the "
-           "estimate back"},
-          run_stale_covariance};
+  return {.place = 80,
+          .key = "stale-covariance",
+          .title = "One fix after an hour of coasting",
+          .figure = "horizontal error after the first late fix",
+          .unit = "m",
+          .limits = {4.0, 100.0,
+                     "three sigma of a 1 m fix and a second of motion; at 100 m the fix did not "
+                     "bring the estimate back"},
+          .run = run_stale_covariance};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -1,11 +1,11 @@
 #include <string>
 
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 struct RestingImu {
@@ -48,13 +48,16 @@ std::vector<AtlasCell> run_stationary_heading(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene stationary_heading() {
-  return {"stationary-heading",
-          "Heading at rest",
-          "heading error over its claimed sigma after ten minutes",
-          "",
+  return {
+      .place = 50,
+      .key = "stationary-heading",
+      .title = "Heading at rest",
+      .figure = "heading error over its claimed sigma after ten minutes",
+      .unit = "",
+      .limits =
           {1.5, 3.0,
            "of 1, by how much two dozen trials scatter; at 3 the heading was learned from noise"},
-          run_stationary_heading};
+      .run = run_stationary_heading};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -2,11 +2,11 @@
 #include <string>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/linear_response.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kHeightErrorM = 0.1;
@@ -55,13 +55,16 @@ std::vector<AtlasCell> run_vertical_channel(const AtlasOptions& /*options*/) {
 }  // namespace
 
 AtlasScene vertical_channel() {
-  return {"vertical-channel",
-          "Height without fixes for half an hour",
-          "claimed over true height error, as a factor",
-          "",
+  return {
+      .place = 120,
+      .key = "vertical-channel",
+      .title = "Height without fixes for half an hour",
+      .figure = "claimed over true height error, as a factor",
+      .unit = "",
+      .limits =
           {1.1, 2.0,
            "a claim within 10 % is as good as a sigma is known; one of half the error is no claim"},
-          run_vertical_channel};
+      .run = run_vertical_channel};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -2,11 +2,11 @@
 #include <string>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/estimator_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kUniformSigmaRad = 1.81;  // of a heading that is anywhere: pi / sqrt(3)
@@ -63,15 +63,15 @@ std::vector<AtlasCell> run_wrong_heading(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene wrong_heading() {
-  return {
-      "wrong-heading",
-      "A heading that is off by up to half a turn",
-      "RMS heading error over the last 20 s of two minutes in town",
-      "deg",
-      {5.0, 20.0,
-       "what a car in town allows a MEMS unit with a right start; from 20 deg on one linearized "
-       "filter does not find back by itself"},
-      run_wrong_heading};
+  return {.place = 60,
+          .key = "wrong-heading",
+          .title = "A heading that is off by up to half a turn",
+          .figure = "RMS heading error over the last 20 s of two minutes in town",
+          .unit = "deg",
+          .limits = {5.0, 20.0,
+                     "what a car in town allows a MEMS unit with a right start; from 20 deg on one "
+                     "linearized filter does not find back by itself"},
+          .run = run_wrong_heading};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -1,8 +1,8 @@
 #include "leeway/earth/rotation.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/crossing.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 /// South of Fiji, eastwards.
@@ -25,8 +25,13 @@ std::vector<AtlasCell> run_antimeridian(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene antimeridian() {
-  return {"antimeridian",    "Across the antimeridian", "error of the position", "m",
-          crossing_limits(), run_antimeridian};
+  return {.place = 230,
+          .key = "antimeridian",
+          .title = "Across the antimeridian",
+          .figure = "error of the position",
+          .unit = "m",
+          .limits = crossing_limits(),
+          .run = run_antimeridian};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

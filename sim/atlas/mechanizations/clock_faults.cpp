@@ -1,8 +1,8 @@
 #include "leeway/ekf/ekf.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 using std::chrono::hours;
@@ -90,13 +90,15 @@ std::vector<AtlasCell> run_clock_faults(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene clock_faults() {
-  return {"clock",
-          "Clocks that jump, and the end of a week",
-          "RMS horizontal error before fixes, from a minute after the fault on",
-          "m",
-          {5.0, 50.0,
-           "fixes of 2.5 m alone, one second old, leave five; fifty are a coast without fixes"},
-          run_clock_faults};
+  return {.place = 300,
+          .key = "clock",
+          .title = "Clocks that jump, and the end of a week",
+          .figure = "RMS horizontal error before fixes, from a minute after the fault on",
+          .unit = "m",
+          .limits =
+              {5.0, 50.0,
+               "fixes of 2.5 m alone, one second old, leave five; fifty are a coast without fixes"},
+          .run = run_clock_faults};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -1,12 +1,12 @@
 #include <numbers>
 
 #include "leeway/earth/rotation.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/free_run.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 #include "sim/atlas/vibration.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kConingRad = 0.1 * kRadPerDeg;
@@ -33,15 +33,18 @@ double drift_deg_per_h(const NavState& truth, const NavState& nav, double t_s) {
 }  // namespace
 
 AtlasScene coning() {
-  return {"coning",
-          "Coning vibration",
-          "drift of the attitude",
-          "deg/h",
+  return {
+      .place = 250,
+      .key = "coning",
+      .title = "Coning vibration",
+      .figure = "drift of the attitude",
+      .unit = "deg/h",
+      .limits =
           {1.0, 10.0,
            "1 deg/h is what a tactical gyro drifts by itself, 10 deg/h what a good MEMS gyro does"},
-          [](const AtlasOptions& options) {
-            return vibration_cells(coning_motion, drift_deg_per_h, options);
-          }};
+      .run = [](const AtlasOptions& options) {
+        return vibration_cells(coning_motion, drift_deg_per_h, options);
+      }};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -2,13 +2,13 @@
 
 #include <array>
 
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
 #include "sim/atlas/free_run.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 /// Of the eight, which ends where it began; its body motions fit in with whole periods.
@@ -47,15 +47,15 @@ std::vector<AtlasCell> run_euler_hour(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene euler_hour() {
-  return {
-      "euler-hour",
-      "An hour of explicit Euler",
-      "largest horizontal error in an hour without fixes, perfect sensors",
-      "m",
-      {185.2, 1852.0,
-       "a nautical mile an hour is a navigation-grade INS with all its sensors' errors; a tenth "
-       "of it does not show"},
-      run_euler_hour};
+  return {.place = 270,
+          .key = "euler-hour",
+          .title = "An hour of explicit Euler",
+          .figure = "largest horizontal error in an hour without fixes, perfect sensors",
+          .unit = "m",
+          .limits = {185.2, 1852.0,
+                     "a nautical mile an hour is a navigation-grade INS with all its sensors' "
+                     "errors; a tenth of it does not show"},
+          .run = run_euler_hour};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "leeway/ekf/ekf_config.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kOrderDriveS = 120.0;
@@ -127,14 +127,15 @@ std::vector<AtlasCell> run_fix_order(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene fix_order() {
-  return {"fix-order",
-          "Late, duplicate and out-of-order fixes",
-          "RMS horizontal error from a minute on",
-          "m",
-          {5.0, 50.0,
-           "fixes of 2.5 m leave less than five; ten are half a second at 20 m/s, fifty a coast "
-           "without fixes"},
-          run_fix_order};
+  return {.place = 290,
+          .key = "fix-order",
+          .title = "Late, duplicate and out-of-order fixes",
+          .figure = "RMS horizontal error from a minute on",
+          .unit = "m",
+          .limits = {5.0, 50.0,
+                     "fixes of 2.5 m leave less than five; ten are half a second at 20 m/s, fifty "
+                     "a coast without fixes"},
+          .run = run_fix_order};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -1,11 +1,11 @@
 #include <spdlog/fmt/fmt.h>
 
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/free_run.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kFloatRunS = 60.0;
@@ -72,14 +72,15 @@ std::vector<AtlasCell> run_float_position(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene float_position() {
-  return {"float-position",
-          "Earth-fixed position in single precision",
-          "horizontal error after 60 s",
-          "m",
-          {0.1, 1.0,
-           "0.1 m is what no GNSS receiver without carrier phase would see; a metre after a minute "
-           "is what the sensors of a car-grade IMU cost"},
-          run_float_position};
+  return {.place = 240,
+          .key = "float-position",
+          .title = "Earth-fixed position in single precision",
+          .figure = "horizontal error after 60 s",
+          .unit = "m",
+          .limits = {0.1, 1.0,
+                     "0.1 m is what no GNSS receiver without carrier phase would see; a metre "
+                     "after a minute is what the sensors of a car-grade IMU cost"},
+          .run = run_float_position};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -7,14 +7,14 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/free_run.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 #include "sim/atlas/trials.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kLoopRadiusM = 250.0;
@@ -171,15 +171,15 @@ std::vector<AtlasCell> run_pitch_90(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene pitch_90() {
-  return {
-      "pitch-90",
-      "Loops through a pitch of 90 deg",
-      "largest error of the attitude",
-      "deg",
-      {0.1, 1.0,
-       "a filter on a tactical IMU knows its attitude to a tenth of a degree, one on a car-grade "
-       "IMU to a degree"},
-      run_pitch_90};
+  return {.place = 210,
+          .key = "pitch-90",
+          .title = "Loops through a pitch of 90 deg",
+          .figure = "largest error of the attitude",
+          .unit = "deg",
+          .limits = {0.1, 1.0,
+                     "a filter on a tactical IMU knows its attitude to a tenth of a degree, one on "
+                     "a car-grade IMU to a degree"},
+          .run = run_pitch_90};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "leeway/earth/rotation.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/crossing.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kFromPoleRad = 0.3 * kRadPerDeg;
@@ -38,7 +38,13 @@ std::vector<AtlasCell> run_pole(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene pole() {
-  return {"pole", "Over the north pole", "error of the position", "m", crossing_limits(), run_pole};
+  return {.place = 220,
+          .key = "pole",
+          .title = "Over the north pole",
+          .figure = "error of the position",
+          .unit = "m",
+          .limits = crossing_limits(),
+          .run = run_pole};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -1,11 +1,11 @@
 #include <numbers>
 
 #include "leeway/earth/rotation.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 #include "sim/atlas/vibration.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kScullingRad = 0.2 * kRadPerDeg;
@@ -35,16 +35,17 @@ double force_error_mg(const NavState& truth, const NavState& nav, double t_s) {
 }  // namespace
 
 AtlasScene sculling() {
-  return {"sculling",
-          "Sculling vibration",
-          "error of the mean acceleration",
-          "mg",
-          {0.1, 1.0,
-           "0.1 mg is the bias of an accelerometer between tactical and aviation grade, 1 mg that "
-           "of a tactical one"},
-          [](const AtlasOptions& options) {
+  return {.place = 260,
+          .key = "sculling",
+          .title = "Sculling vibration",
+          .figure = "error of the mean acceleration",
+          .unit = "mg",
+          .limits = {0.1, 1.0,
+                     "0.1 mg is the bias of an accelerometer between tactical and aviation grade, "
+                     "1 mg that of a tactical one"},
+          .run = [](const AtlasOptions& options) {
             return vibration_cells(sculling_motion, force_error_mg, options);
           }};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

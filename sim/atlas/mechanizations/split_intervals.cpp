@@ -1,14 +1,14 @@
 #include <array>
 #include <cmath>
 
+#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/random.hpp"
 #include "sim/atlas/free_run.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kNominalS = 0.01;
@@ -106,14 +106,15 @@ std::vector<AtlasCell> run_split_intervals(const AtlasOptions&) {
 }  // namespace
 
 AtlasScene split_intervals() {
-  return {"split-intervals",
-          "Jittered and split IMU intervals",
-          "error of the position after 100 s, perfect sensors",
-          "m",
-          {0.1, 10.0,
-           "a tenth of a metre does not show beside any fix; ten metres are what a car-grade IMU "
-           "itself makes of a minute and a half"},
-          run_split_intervals};
+  return {.place = 280,
+          .key = "split-intervals",
+          .title = "Jittered and split IMU intervals",
+          .figure = "error of the position after 100 s, perfect sensors",
+          .unit = "m",
+          .limits = {0.1, 10.0,
+                     "a tenth of a metre does not show beside any fix; ten metres are what a "
+                     "car-grade IMU itself makes of a minute and a half"},
+          .run = run_split_intervals};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

@@ -2,10 +2,10 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/ekf/ekf_config.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kUnderDriveS = 400.0;
@@ -99,12 +99,14 @@ std::vector<AtlasCell> run_under_modelled(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene under_modelled() {
-  return {"under-modelled",
-          "Sensors that err otherwise than the filter believes",
-          "RMS horizontal error before a fix, over the claimed sigma",
-          "",
-          {1.5, 3.0, "an honest filter has 1; at 3 what it calls one in twenty is the rule"},
-          run_under_modelled};
+  return {
+      .place = 320,
+      .key = "under-modelled",
+      .title = "Sensors that err otherwise than the filter believes",
+      .figure = "RMS horizontal error before a fix, over the claimed sigma",
+      .unit = "",
+      .limits = {1.5, 3.0, "an honest filter has 1; at 3 what it calls one in twenty is the rule"},
+      .run = run_under_modelled};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

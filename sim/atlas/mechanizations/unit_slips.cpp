@@ -1,9 +1,9 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "sim/atlas/mechanization_scenes.hpp"
+#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
-namespace leeway::sim {
+namespace leeway::sim::scenes {
 namespace {
 
 constexpr double kSlipDriveS = 120.0;
@@ -102,14 +102,15 @@ std::vector<AtlasCell> run_unit_slips(const AtlasOptions& options) {
 }  // namespace
 
 AtlasScene unit_slips() {
-  return {"unit-slips",
-          "Slips of units, signs and axes",
-          "RMS horizontal error before fixes, from 90 s on",
-          "m",
-          {5.0, 50.0,
-           "fixes of 2.5 m alone, one second old, leave five; beyond fifty the solution is worse "
-           "than a receiver that has lost half of its satellites"},
-          run_unit_slips};
+  return {.place = 310,
+          .key = "unit-slips",
+          .title = "Slips of units, signs and axes",
+          .figure = "RMS horizontal error before fixes, from 90 s on",
+          .unit = "m",
+          .limits = {5.0, 50.0,
+                     "fixes of 2.5 m alone, one second old, leave five; beyond fifty the solution "
+                     "is worse than a receiver that has lost half of its satellites"},
+          .run = run_unit_slips};
 }
 
-}  // namespace leeway::sim
+}  // namespace leeway::sim::scenes

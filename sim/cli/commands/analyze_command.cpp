@@ -83,7 +83,7 @@ std::string error_budget_csv(const sim::ErrorBudget& error_budget) {
     csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
                        horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
   };
-  for (const sim::BudgetLine& line : error_budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  for (const sim::BudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   return csv;
 }
@@ -123,7 +123,7 @@ void print_sources(sim::ErrorBudget error_budget) {
     cells.push_back(number(100.0 * m2 / horizontal_m2(sum), 2));
     table.add(std::move(cells));
   };
-  for (const sim::BudgetLine& line : error_budget) add(sim::name(line.source), line.mean_sq_n_m2);
+  for (const sim::BudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   table.print();
 }
@@ -132,7 +132,7 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
              scene.imu_name, scene.gnss.interval_s, scene.duration_s);
   fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
-             leeway::name(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
+             name(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
   fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
   if (r.settled) {
     fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);
@@ -148,7 +148,7 @@ Json results_json(const sim::CovarianceAnalysis& r) {
   Json error_budget = Json::array();
   const double sum_m2 = horizontal_m2(total(r.budget));
   for (const sim::BudgetLine& line : r.budget) {
-    error_budget.push_back({{"source", sim::name(line.source)},
+    error_budget.push_back({{"source", name(line.source)},
                             {"north_m2", line.mean_sq_n_m2(0, 0)},
                             {"east_m2", line.mean_sq_n_m2(1, 1)},
                             {"down_m2", line.mean_sq_n_m2(2, 2)},

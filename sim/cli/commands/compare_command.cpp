@@ -38,7 +38,7 @@ std::string number_of(const std::optional<std::size_t>& index) {
 std::string outcome_of(const sim::Accuracy& accuracy) {
   const sim::Consistency consistency = sim::consistency_of(accuracy);
   const sim::CampaignResult& r = accuracy.figures;
-  const std::string word(sim::name(consistency));
+  const std::string word(name(consistency));
   if (consistency == sim::Consistency::kNotFinite) {
     return fmt::format("{}: {} of {}", word, r.not_finite, r.trials);
   }
@@ -117,7 +117,7 @@ Json comparison_json(const sim::Comparison& comparison) {
                     {"r95_m", c.accuracy.r95_m},
                     {"nees", nees_of(c.accuracy)},
                     {"nees_band", {r.nees_low, r.nees_high}},
-                    {"consistency", sim::name(sim::consistency_of(c.accuracy))},
+                    {"consistency", name(sim::consistency_of(c.accuracy))},
                     {"trials_diverged", r.diverged},
                     {"trials_not_finite", r.not_finite},
                     {"front", c.on_front},
@@ -146,9 +146,9 @@ sim::Comparison compared(const CompareChoice& options) {
 int run(const CompareChoice& options) {
   const sim::Comparison comparison = compared(options);
   const int repeat = options.compare.repeat;
-  show(options.output,
-       answer_json("compare", timed_input_json(comparison.scene, repeat),
-                   comparison_json(comparison)),
+  Json input = timed_input_json(comparison.scene, repeat);
+  input.erase("gate_probability");  // there is no gate
+  show(options.output, answer_json("compare", std::move(input), comparison_json(comparison)),
        [&] { print_comparison(comparison, repeat); });
   const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
                                [](const sim::Compared& c) { return c.on_front; });
@@ -161,6 +161,10 @@ void add_options(CLI::App& app, CompareChoice& options) {
   add_repeat_option(app, options.compare.repeat);
   add_threads_option(app, options.compare.threads, "of the runs that are not timed; ");
   add_output_options(app, options.output);
+  // Scripts may still have it.
+  app.add_option("--csv")->group("")->check([](const std::string&) {
+    return "gone: use --json, whose results[] has these rows, and nees_band";
+  });
 }
 
 const Command kCompare{

@@ -50,11 +50,11 @@ const sim::DriftRow& row(const sim::DriftStudy& study, ImuClass imu, DriftReadin
 template <class Cell>
 void print_table(const sim::DriftStudy& study, const Cell& cell) {
   Table table({"<class", "paper", "its assumptions", "complete: low", "mid", "high"});
-  for (const ImuClass imu : kImuClasses) {
+  for (const ImuClass imu : kAll<ImuClass>) {
     std::vector<std::string> cells{
         std::string(name(imu)), cell(row(study, imu, DriftReading::kPaper, RangeEnd::kLow)),
         cell(row(study, imu, DriftReading::kPaperAssumptions, RangeEnd::kLow))};
-    for (const RangeEnd range : kRangeEnds) {
+    for (const RangeEnd range : kAll<RangeEnd>) {
       cells.push_back(cell(row(study, imu, DriftReading::kComplete, range)));
     }
     table.add(std::move(cells));
@@ -86,7 +86,7 @@ Json results_json(const sim::DriftStudy& study) {
   for (const sim::DriftRow& r : study.rows) {
     results.push_back({{"imu", name(r.imu)},
                        {"range", name(r.range)},
-                       {"reading", sim::name(r.reading)},
+                       {"reading", name(r.reading)},
                        {"error_100s_m", r.error_100s_m},
                        {"error_100s_p2_5_m", r.error_100s_p2_5_m},
                        {"error_100s_p97_5_m", r.error_100s_p97_5_m},
@@ -102,7 +102,7 @@ std::string curves_csv(const sim::DriftStudy& study) {
   std::size_t rows = 0;
   for (const sim::DriftCurve& curve : study.curves) {
     const std::string stem =
-        fmt::format(",{}_{}_{}", name(curve.imu), name(curve.range), sim::name(curve.reading));
+        fmt::format(",{}_{}_{}", name(curve.imu), name(curve.range), name(curve.reading));
     csv += stem + "_m";
     if (curve.reading == DriftReading::kComplete) csv += stem + "_p2_5_m" + stem + "_p97_5_m";
     rows = std::max(rows, curve.t_s.size());
@@ -133,8 +133,8 @@ Json curves_json(const sim::DriftStudy& study) {
     for (std::size_t k = 0; k < curve.t_s.size(); ++k) {
       table.add({curve.t_s[k], curve.error_m[k], at(curve.p2_5_m, k), at(curve.p97_5_m, k)});
     }
-    curves[fmt::format("curve/{}/{}/{}", name(curve.imu), name(curve.range),
-                       sim::name(curve.reading))] = table.json();
+    curves[fmt::format("curve/{}/{}/{}", name(curve.imu), name(curve.range), name(curve.reading))] =
+        table.json();
   }
   return curves;
 }

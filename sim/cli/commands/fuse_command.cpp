@@ -118,8 +118,8 @@ void add_log_options(CLI::App& app, FuseLogs& logs) {
   app.add_option("--rate-meaning", logs.rate_meaning,
                  "what a rate in the IMU log is: the value at its time, the mean since the one "
                  "before, or a value held until the next")
-      ->check(CLI::IsMember(rate_meaning_names()))
-      ->capture_default_str();
+      ->transform(named<RateMeaning>())
+      ->default_str(std::string(name(logs.rate_meaning)));
   add_numbers<2>(app, "--gnss-sigma-scale", "POS,VEL", logs.gnss_sigma_scale,
                  "multiply the standard deviations of the GNSS log (default: 1,1)");
 }
@@ -142,9 +142,9 @@ void add_filter_options(CLI::App& app, FuseOptions& options) {
          "--align-speed-mps", options.alignment.min_speed_mps,
          "the GNSS course is taken as the heading from this speed on, m/s; 1 suits a walker")
       ->capture_default_str();
-  app.add_option("--scheme", options.scheme, "integration scheme of the strapdown")
-      ->check(CLI::IsMember(scheme_names()))
-      ->capture_default_str();
+  app.add_option("--scheme", filter.strapdown.scheme, "integration scheme of the strapdown")
+      ->transform(named<Scheme>())
+      ->default_str(std::string(name(filter.strapdown.scheme)));
 }
 
 void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {

@@ -6,37 +6,10 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::cli {
-namespace {
-
-const char* format_name(ImuLogFormat format) {
-  switch (format) {
-    case ImuLogFormat::kCsvRates:
-      return "CSV, rates";
-    case ImuLogFormat::kCsvIncrements:
-      return "CSV, increments";
-    case ImuLogFormat::kKfGins:
-      break;
-  }
-  return "KF-GINS text";
-}
-
-const char* format_name(GnssLogFormat format) {
-  switch (format) {
-    case GnssLogFormat::kCsv:
-      return "CSV";
-    case GnssLogFormat::kKfGins:
-      return "KF-GINS text";
-    case GnssLogFormat::kRtklib:
-      break;
-  }
-  return "RTKLIB .pos";
-}
-
-std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
+namespace {}
 
 /// C_bs of a mount; without one the sensor axes are the body axes.
 Eigen::Matrix3d mount_rotation(const std::optional<Eigen::Vector3d>& rpy_deg,
@@ -59,10 +32,10 @@ void inspect(FuseJob& job) {
   const sim::ReplayInput& in = job.input;
   job.imu_format = job.gnss_format = "stream";
   if (can_be_read_twice(in.imu)) {
-    job.imu_format = format_name(ImuLogReader(in.imu, in.imu_options).format());
+    job.imu_format = ImuLogReader(in.imu, in.imu_options).layout();
   }
   if (can_be_read_twice(in.gnss)) {
-    job.gnss_format = format_name(GnssLogReader(in.gnss, in.gnss_options).format());
+    job.gnss_format = GnssLogReader(in.gnss, in.gnss_options).layout();
   }
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
     if (in.aidings[a].empty() || !can_be_read_twice(in.aidings[a])) continue;
@@ -74,8 +47,7 @@ void inspect(FuseJob& job) {
 FuseJob job_with_options(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
   FuseJob job;
-  job.input.imu_options.meaning =
-      static_cast<RateMeaning>(index_of(rate_meaning_names(), logs.rate_meaning));
+  job.input.imu_options.meaning = logs.rate_meaning;
   if (logs.gnss_sigma_scale) {
     job.input.gnss_options.position_sigma_scale = logs.gnss_sigma_scale->x();
     job.input.gnss_options.velocity_sigma_scale = logs.gnss_sigma_scale->y();
@@ -137,22 +109,16 @@ FuseJob job_of_drive(const FuseOptions& options, const std::filesystem::path& fo
 
 }  // namespace
 
-const std::vector<std::string>& rate_meaning_names() {
-  static const std::vector<std::string> names{"mean", "point", "held"};
-  return names;
-}
-
-const std::vector<std::string>& scheme_names() {
-  static const std::vector<std::string> names{"explicit-euler", "semi-implicit-euler", "trapezoid",
-                                              "one-sample",     "two-sample",          "rk4"};
-  return names;
+return names;
 }
 
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
   if (vehicle.name == "none") return {};
   VehicleConfig config = VehicleConfig::car();
   for (const VehiclePart& part : kVehicleParts) {
-    config.*part.is_on = std::count(vehicle.without.begin(), vehicle.without.end(), part.name) == 0;
+    config.*part.is_on =
+        std::none_of(vehicle.without.begin(), vehicle.without.end(),
+                     [&](const auto& name) { return is_same_name(name, part.name); });
   }
   return config;
 }
@@ -164,7 +130,6 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
   config.timing = options.timing;
   config.vehicle = vehicle_config(options.vehicle);
   config.filter.imu = imu;
-  config.filter.strapdown.scheme = static_cast<Scheme>(index_of(scheme_names(), options.scheme));
   if (options.lever_arm_b_m) config.filter.lever_arm_b_m = *options.lever_arm_b_m;
   static_cast<void>(Navigator(config));  // refuses what cannot be
   return config;

@@ -26,7 +26,7 @@ struct FuseLogs {
   std::optional<Eigen::Vector2d> truth_window_s{};
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
   std::string mount_axes{"flu"};
-  std::string rate_meaning{"point"};
+  RateMeaning rate_meaning{RateMeaning::kPoint};
   std::optional<Eigen::Vector2d> gnss_sigma_scale{};  ///< of position, of velocity
 };
 
@@ -49,10 +49,9 @@ struct FuseOptions {
   FuseVehicle vehicle{};
   FuseOutput output{};
   ImuChoice imu{};
-  EkfConfig filter{};  ///< all but the IMU model, the scheme and the lever arm
+  EkfConfig filter{};  ///< all but the IMU model and the lever arm
   AlignmentConfig alignment{};
   TimingConfig timing{};
-  std::string scheme{"two-sample"};
   std::optional<Eigen::Vector3d> lever_arm_b_m{};
 };
 
@@ -66,10 +65,6 @@ struct FuseJob {
   sim::ReplayInput input{};
   sim::ReplayResult result{};
 };
-
-/// The names of RateMeaning and of Scheme, in their order.
-const std::vector<std::string>& rate_meaning_names();
-const std::vector<std::string>& scheme_names();
 
 /// @throws Error when the IMU model cannot be read or a number is out of range.
 NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu);

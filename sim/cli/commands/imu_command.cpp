@@ -23,7 +23,7 @@ using sim::Triad;
 
 struct ShownChoice {
   std::string name{};
-  std::string range{"mid"};
+  RangeEnd range{RangeEnd::kMid};
   Output output{};
 };
 
@@ -225,7 +225,7 @@ int run(const ShownChoice& options) {
   }
   const Shown s = shown(options);
   show(options.output,
-       answer_json("imu", {{"name", options.name}, {"range", options.range}}, shown_json(s)),
+       answer_json("imu", {{"name", options.name}, {"range", name(options.range)}}, shown_json(s)),
        [&] { print_tables(s); });
   return kSuccess;
 }

@@ -30,16 +30,16 @@ struct IntervalChoice {
 std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
   if (!choice.imus.empty()) return scenes_of(choice);
   SceneChoice classes = choice;
-  for (const ImuClass c : kImuClasses) classes.imus.emplace_back(name(c));
+  classes.imus.assign(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
   std::vector<sim::Scene> scenes = scenes_of(classes);
   SceneChoice as_written = choice;
-  as_written.bias.clear();
-  as_written.range.clear();
+  as_written.bias.reset();
+  as_written.range.reset();
   sim::Scene own = scene_of(as_written);
   const auto is_class = [&own](ImuClass c) {
     return own.imu_name.starts_with(std::string(name(c)) + "/");
   };
-  if (std::none_of(kImuClasses.begin(), kImuClasses.end(), is_class)) {
+  if (std::none_of(kAll<ImuClass>.begin(), kAll<ImuClass>.end(), is_class)) {
     scenes.push_back(std::move(own));
   }
   return scenes;

@@ -52,7 +52,7 @@ void print_terms(const sim::ModelReduction& reduction) {
   Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark",
                "diverged", "cost, ns/s", "<in the reduced model"});
   for (const sim::TermWorth& term : reduction.terms) {
-    table.add({std::string(sim::name(term.term)), std::string(sim::substitute(term.term)),
+    table.add({std::string(name(term.term)), std::string(sim::substitute(term.term)),
                number(term.predicted_m, 5), number(term.measured_m, 5),
                number(term.predicted_m / term.measured_m, 2),
                remark(term, reduction.scene.limit.limit_m), fmt::format("{}", term.diverged),
@@ -121,7 +121,7 @@ Json reduction_json(const sim::ModelReduction& reduction) {
   const double limit_m = reduction.scene.limit.limit_m;
   Json terms = Json::array();
   for (const sim::TermWorth& term : reduction.terms) {
-    terms.push_back({{"term", sim::name(term.term)},
+    terms.push_back({{"term", name(term.term)},
                      {"substitute", sim::substitute(term.term)},
                      {"predicted_m", term.predicted_m},
                      {"measured_m", term.measured_m},

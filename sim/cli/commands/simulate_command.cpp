@@ -1,11 +1,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "leeway/earth/error.hpp"
@@ -49,7 +51,7 @@ struct GnssOptions {
 
 struct SimulateChoice {
   std::filesystem::path scene{};  ///< in place of the options from here ..
-  std::string trajectory{};
+  std::optional<sim::TrajectoryKind> trajectory{};
   double duration_s{600.0};
   double imu_rate_hz{200.0};
   ImuChoice imu{};
@@ -73,14 +75,10 @@ Factory factory(sim::Trajectory (*make)(const Parameters&)) {
   };
 }
 
-const std::map<std::string, Factory>& factories() {
-  static const std::map<std::string, Factory> all{{"static", factory(sim::static_trajectory)},
-                                                  {"straight", factory(sim::straight)},
-                                                  {"circle", factory(sim::circle)},
-                                                  {"square-loop", factory(sim::square_loop)},
-                                                  {"car", factory(sim::car_drive)}};
-  return all;
-}
+// In the order of TrajectoryKind; the rest of them need a scene file.
+const std::array<Factory, 5> kFactories{factory(sim::static_trajectory), factory(sim::straight),
+                                        factory(sim::circle), factory(sim::square_loop),
+                                        factory(sim::car_drive)};
 
 sim::GnssErrorModel gnss_model(const SimulateChoice& o) {
   const GnssOptions& g = o.gnss;
@@ -96,8 +94,9 @@ sim::GnssErrorModel gnss_model(const SimulateChoice& o) {
 sim::Scene scene_from_options(const SimulateChoice& options) {
   const NamedImu imu = imu_of(options.imu);
   sim::Scene scene;
-  scene.name = options.trajectory;
-  scene.trajectory = factories().at(options.trajectory)(options.duration_s);
+  scene.name = name(*options.trajectory);
+  scene.trajectory =
+      kFactories.at(static_cast<std::size_t>(*options.trajectory))(options.duration_s);
   scene.duration_s = options.duration_s;
   scene.imu_rate_hz = options.imu_rate_hz;
   set_imu(scene, imu.name, imu.model);
@@ -108,7 +107,7 @@ sim::Scene scene_from_options(const SimulateChoice& options) {
 
 Json options_json(const SimulateChoice& options, const sim::Scene& scene) {
   const GnssOptions& g = options.gnss;
-  return {{"trajectory", options.trajectory},
+  return {{"trajectory", name(*options.trajectory)},
           {"duration_s", options.duration_s},
           {"imu_rate_hz", options.imu_rate_hz},
           {"imu_model", scene.imu_name},
@@ -217,7 +216,7 @@ void print_tables(const SimulateChoice& options, const sim::Scene& scene, const 
 }
 
 int run(const SimulateChoice& options) {
-  if (options.scene.empty() && options.trajectory.empty()) {
+  if (options.scene.empty() && !options.trajectory) {
     throw Error("simulate: give --scene FILE.toml or --trajectory NAME");
   }
   const sim::Scene scene =
@@ -258,10 +257,8 @@ void exclude_all(CLI::App& app, CLI::Option* scene) {
 }
 
 void add_options(CLI::App& app, SimulateChoice& options) {
-  std::vector<std::string> trajectories;
-  for (const auto& [name, make] : factories()) trajectories.push_back(name);
   app.add_option("--trajectory", options.trajectory, "the motion")
-      ->check(CLI::IsMember(trajectories));
+      ->transform(named<sim::TrajectoryKind>(kFactories.size()));
   app.add_option("--duration-s", options.duration_s, "length, s")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();

@@ -27,7 +27,7 @@ std::string limits_text(const sim::AtlasScene& scene) {
 }
 
 std::string verdict_text(const sim::AtlasScene& scene, const sim::AtlasCell& cell) {
-  return std::string(sim::name(sim::verdict_of(scene.limits, cell.figure)));
+  return std::string(name(sim::verdict_of(scene.limits, cell.figure)));
 }
 
 std::string reported_text(const sim::AtlasScene& scene, const sim::AtlasCell& cell) {
@@ -39,7 +39,7 @@ void print_scene(const sim::AtlasResult& result) {
   fmt::print("\n{}: {}\n  {}; {}\n", scene.key, scene.title, scene.figure, limits_text(scene));
   Table table({"<of", "<variant", "<condition", figure_heading(scene), "<verdict", "<reported"});
   for (const sim::AtlasCell& cell : result.cells) {
-    table.add({std::string(sim::name(cell.group)), cell.variant, cell.condition,
+    table.add({std::string(name(cell.group)), cell.variant, cell.condition,
                with_unit(cell.figure, ""), verdict_text(scene, cell), reported_text(scene, cell)});
   }
   table.print();
@@ -66,14 +66,14 @@ std::string matrix_entry(const sim::AtlasResult& result, sim::AtlasGroup group) 
 std::string markdown_matrix(const std::vector<sim::AtlasResult>& results) {
   std::string head = "| scene |";
   std::string rule = "|---|";
-  for (std::size_t g = 0; g < sim::kAtlasGroups; ++g) {
-    head += fmt::format(" {} |", sim::name(static_cast<sim::AtlasGroup>(g)));
+  for (std::size_t g = 0; g < kAll<sim::AtlasGroup>.size(); ++g) {
+    head += fmt::format(" {} |", name(static_cast<sim::AtlasGroup>(g)));
     rule += "---|";
   }
   std::string text = head + "\n" + rule + "\n";
   for (const sim::AtlasResult& result : results) {
     text += fmt::format("| [{}](atlas/{}.md) |", result.scene.title, result.scene.key);
-    for (std::size_t g = 0; g < sim::kAtlasGroups; ++g) {
+    for (std::size_t g = 0; g < kAll<sim::AtlasGroup>.size(); ++g) {
       text += fmt::format(" {} |", matrix_entry(result, static_cast<sim::AtlasGroup>(g)));
     }
     text += "\n";
@@ -178,7 +178,7 @@ Json atlas_json(const std::vector<sim::AtlasResult>& results,
     for (const sim::AtlasCell& cell : result.cells) {
       cells.push_back({{"scene", scene.key},
                        {"title", scene.title},
-                       {"group", sim::name(cell.group)},
+                       {"group", name(cell.group)},
                        {"variant", cell.variant},
                        {"condition", cell.condition},
                        {"figure", cell.figure},

@@ -167,18 +167,6 @@ Json imu_json(const sim::Scene& scene) {
   return {{"imu", scene.imu_name.substr(0, slash)}, {"range", range}};
 }
 
-std::string_view name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kNever:
-      return "never";
-    case Outcome::kAlways:
-      return "always";
-    case Outcome::kSolved:
-      break;
-  }
-  return "solved";
-}
-
 Json confirm_json(const Confirmation& c) {
   const sim::CampaignResult& r = c.campaign;
   return {{"trials", r.trials},
@@ -200,7 +188,7 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
   fmt::print(
       "Time without fixes from a perfect start / longest time between fixes, s, for a horizontal "
       "error ({}) below\n",
-      leeway::name(scene.limit.metric));
+      name(scene.limit.metric));
   print_answers(solved);
   print_conclusion(solved);
   print_optimism(solved);
@@ -216,8 +204,8 @@ Json interval_json(const std::vector<SolvedImu>& solved) {
       const bool asked = !imu.confirmations.empty() && imu.confirmations[i];
       Json row = imu_json(imu.scene);
       row["motion"] = imu.scene.trajectory.name;
-      row["bias_model"] = sim::name(sim::bias_model_of(imu.scene.imu));
-      row["metric"] = leeway::name(imu.scene.limit.metric);
+      row["bias_model"] = name(sim::bias_model_of(imu.scene.imu));
+      row["metric"] = name(imu.scene.limit.metric);
       row["limit_m"] = a.limit_m;
       row["interval_s"] = a.interval_s;
       row["free_inertial_s"] = a.free_inertial_s;

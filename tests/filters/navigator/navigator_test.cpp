@@ -12,6 +12,7 @@
 #include "leeway/model/initial_covariance.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/filters/navigator/same_bits.hpp"
+#include "tests/support/changed.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/numbers.hpp"
 #include "tests/support/temp_dir.hpp"
@@ -452,17 +453,11 @@ TEST_CASE("an invalid configuration is refused at once") {
   CHECK(test::contains(message([](auto& c) { c.filter.gnss_correlation_s = -1.0; }),
                        "gnss_correlation_s"));
   CHECK(test::contains(message([](auto& c) { c.alignment.min_speed_mps = 0.0; }), "min_speed_mps"));
-}
-
-TEST_CASE("verdicts have distinct names") {
-  for (std::size_t i = 0; i < kVerdicts; ++i) {
-    CHECK_FALSE(name(static_cast<Verdict>(i)).empty());
-    for (std::size_t j = 0; j < i; ++j) {
-      CHECK(name(static_cast<Verdict>(i)) != name(static_cast<Verdict>(j)));
-    }
-  }
-  CHECK(name(Verdict::kOutOfOrder) == "out_of_order");
-  CHECK(name(Verdict::kOverflow) == "overflow");
+  test::for_each_changed(
+      NavigatorConfig{}, test::ToNan{}, [](const std::string& field, const NavigatorConfig& bad) {
+        CAPTURE(field);
+        CHECK(test::contains(test::message_of<Error>([&] { Navigator{bad}; }), field + " is nan"));
+      });
 }
 
 TEST_CASE("1e5 damaged inputs: no exception, no NaN, and every one is counted" *

@@ -37,9 +37,7 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
   const ErrorMatrix P = initial_covariance(start, {0.01, 0.05, 0.1, 3.0}, config.imu);
 
   SUBCASE("predict, update, coast, covariance, solution, with every scheme") {
-    for (const Scheme scheme :
-         {Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler, Scheme::kTrapezoid,
-          Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4}) {
+    for (const Scheme scheme : kAll<Scheme>) {
       config.strapdown.scheme = scheme;
       Ekf ekf(config, start, P);
       const test::AllocationCounter guard;
@@ -85,7 +83,7 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
     for (const Ekf* ekf : {&straight, &turning}) {
       for (const double limit_m : {8.0, 50.0, 1e5, 1e100}) {
         sum_s += time_to_limit(*ekf, limit_m).time_s;
-        for (const HorizontalMetric metric : kHorizontalMetrics) {
+        for (const HorizontalMetric metric : kAll<HorizontalMetric>) {
           sum_s += time_to_limit(*ekf, limit_m, metric).time_s;
         }
       }

@@ -175,7 +175,8 @@ TEST_CASE("an invalid configuration is refused by name") {
   CHECK(test::contains(message([](auto& c) { c.rest_sigma_mps = 0.0; }), "rest_sigma_mps"));
   CHECK(test::contains(message([](auto& c) { c.min_speed_mps = -1.0; }), "min_speed_mps"));
   CHECK(test::contains(message([](auto& c) { c.mount_sigma_rad = -0.1; }), "mount_sigma_rad"));
-  CHECK(test::contains(message([](auto& c) { c.rear_axle_x_m = 200.0; }), "within 100 m"));
+  CHECK(test::contains(message([](auto& c) { c.rear_axle_x_m = 200.0; }),
+                       "is 200, must be -100 to 100"));
   CHECK_NOTHROW(validate(VehicleConfig::car()));
 }
 

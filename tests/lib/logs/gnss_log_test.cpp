@@ -63,7 +63,7 @@ TEST_CASE("a CSV row is a fix with covariances in ECEF, its sigmas scaled") {
                               .velocity_sigma_scale = 2.0,
                               .time_offset = Duration{-500'000'000}});
   const auto fixes = all(reader);
-  CHECK(reader.format() == GnssLogFormat::kCsv);
+  CHECK(reader.layout() == "CSV");
   REQUIRE(fixes.size() == 1);
   const Geodetic at = place(45, -80, 120);
   CHECK(fixes[0].time == time_from_seconds(1.0));
@@ -168,7 +168,7 @@ TEST_CASE("files without usable content and wrong options are refused") {
   CHECK(contains(message("% (lat/lon/height=WGS84/geodetic,Q=1:fix)\n"),
                  "set the RTKLIB option out-height to ellipsoidal"));
   CHECK(contains(message("%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m)\n"),
-                 "missing columns sde, sdu in its RTKLIB header"));
+                 "missing columns sde, sdu; expected an RTKLIB header with latitude"));
   CHECK(contains(message(kHeader, {.position_sigma_scale = 0.0}), "position_sigma_scale"));
   CHECK(contains(message(kHeader, {.velocity_sigma_scale = std::nan("")}), "velocity_sigma_scale"));
   CHECK_THROWS_AS(GnssLogReader{dir / "absent"}, Error);
@@ -192,7 +192,7 @@ TEST_CASE("KF-GINS text has 7 or 13 numbers and continues over the end of the we
                                    "604799.000 45.0 -80.0 120.0  2.0 3.0 4.0\n"
                                    "     0.000 45.0 -80.0 121.0  2.0 3.0 4.0\n"));
   const auto fixes = all(positions);
-  CHECK(positions.format() == GnssLogFormat::kKfGins);
+  CHECK(positions.layout() == "KF-GINS text");
   REQUIRE(fixes.size() == 2);
   CHECK(fixes[1].time == time_from_gps(1, 0.0));
   const Geodetic at = place(45, -80, 121);
@@ -229,7 +229,7 @@ TEST_CASE("RTKLIB in degrees, with signed-root covariances and velocity") {
       "4.0000   0.0000   0.0000   0.0000   0.00   12.3   10.00000   20.00000    1.00000   0.00000  "
       "0.00000  0.00000  0.00000  0.00000  0.00000\r\n"));
   const auto fixes = all(reader);
-  CHECK(reader.format() == GnssLogFormat::kRtklib);
+  CHECK(reader.layout() == "RTKLIB .pos");
   CHECK(reader.report().clean());
   REQUIRE(fixes.size() == 2);
   // 2025-08-28 is the Thursday of GPS week 2381.

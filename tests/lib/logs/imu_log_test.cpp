@@ -48,7 +48,7 @@ TEST_CASE("rates become increments over the time from the line before") {
     ImuLogReader reader(path, {.meaning = meaning});
     const auto increments = all(reader);
     REQUIRE(increments.size() == 1);  // the first line only starts the clock
-    CHECK(reader.format() == ImuLogFormat::kCsvRates);
+    CHECK(reader.layout() == "CSV, rates");
     CHECK(reader.report().lines == 2);
     CHECK(increments[0].time == time_from_seconds(0.75));
     CHECK(increments[0].dt_s == 0.25);
@@ -219,7 +219,7 @@ TEST_CASE("increments of KF-GINS continue over the end of the week") {
                                "604799.999 1e-5  -2e-5 3e-5   0.01 0.02 -0.0981\n"
                                "0.010 1e-5  -2e-5 3e-5   0.01 0.02 -0.0981\n"));
   const auto increments = all(reader);
-  CHECK(reader.format() == ImuLogFormat::kKfGins);
+  CHECK(reader.layout() == "KF-GINS text");
   REQUIRE(increments.size() == 4);
   CHECK(increments[1].time == time_from_gps(1, 0.0));
   CHECK(increments[1].dt_s == 0.005);
@@ -265,7 +265,7 @@ TEST_CASE("written increments read back bit for bit, plain and gzip") {
     writer.close();
     ImuLogReader reader(dir / name);
     const auto read = all(reader);
-    CHECK(reader.format() == ImuLogFormat::kCsvIncrements);
+    CHECK(reader.layout() == "CSV, increments");
     CHECK(reader.report().clean());
     REQUIRE(read.size() == written.size());
     for (std::size_t i = 0; i < read.size(); ++i) {

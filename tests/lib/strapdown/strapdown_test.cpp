@@ -20,18 +20,11 @@ namespace {
 using test::AnalyticMotion;
 using test::near;
 
-constexpr std::array kSchemes{
-    Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler, Scheme::kTrapezoid, Scheme::kOneSample,
-    Scheme::kTwoSample,     Scheme::kRungeKutta4,       Scheme::kConing,    Scheme::kSculling};
-constexpr std::array kGravities{GravityModel::kConstant, GravityModel::kJ2, GravityModel::kNormal};
-constexpr std::array kRotations{EarthRotation::kOff, EarthRotation::kOn, EarthRotation::kTurnAlone,
-                                EarthRotation::kCoriolisAlone};
-
 template <class F>
 void for_each_policy(const F& f) {
-  for (const Scheme scheme : kSchemes) {
-    for (const GravityModel gravity : kGravities) {
-      for (const EarthRotation rotation : kRotations) {
+  for (const Scheme scheme : kAll<Scheme>) {
+    for (const GravityModel gravity : kAll<GravityModel>) {
+      for (const EarthRotation rotation : kAll<EarthRotation>) {
         CAPTURE(static_cast<int>(scheme));
         CAPTURE(static_cast<int>(gravity));
         CAPTURE(static_cast<int>(rotation));
@@ -130,7 +123,7 @@ TEST_CASE("on intervals of unequal length RK4 keeps its order and two-sample los
 
 TEST_CASE("a vehicle at rest stays at rest, at any latitude" * doctest::test_suite("heavy")) {
   for (const double lat_deg : {0.0, 45.0, -60.0, 89.9}) {
-    for (const Scheme scheme : kSchemes) {
+    for (const Scheme scheme : kAll<Scheme>) {
       AnalyticMotion rest;
       rest.origin = {lat_deg * kRadPerDeg, 37.6 * kRadPerDeg, 100.0};
       rest.roll.offset = -3.0 * kRadPerDeg;
@@ -219,10 +212,10 @@ TEST_CASE("a step reports the mean attitude and the force integral in Earth axes
   // 1e-7 m/s. RK4 reports the trapezoid.
   const std::array kForceTolerance_mps{5e-4, 5e-4, 1e-5, 1e-5, 5e-7, 1e-5, 1e-5, 1e-6};
   const std::array kAttitudeTolerance{5e-3, 5e-3, 4e-5, 4e-5, 4e-5, 4e-5, 4e-5, 4e-5};
-  static_assert(kForceTolerance_mps.size() == kSchemes.size());
-  static_assert(kAttitudeTolerance.size() == kSchemes.size());
-  for (std::size_t i = 0; i < kSchemes.size(); ++i) {
-    const StrapdownFunction step = strapdown_function({kSchemes[i]});
+  static_assert(kForceTolerance_mps.size() == kAll<Scheme>.size());
+  static_assert(kAttitudeTolerance.size() == kAll<Scheme>.size());
+  for (std::size_t i = 0; i < kAll<Scheme>.size(); ++i) {
+    const StrapdownFunction step = strapdown_function({kAll<Scheme>[i]});
     NavState state = motion.state(0.0);
     ImuHistory history;
     double force_error = 0.0;
@@ -328,9 +321,9 @@ TEST_CASE("the dispatch table holds the templates") {
     check.operator()<scheme, GravityModel::kNormal>();
   };
   [&]<std::size_t... i>(std::index_sequence<i...>) {
-    (check_scheme.operator()<kSchemes[i]>(), ...);
+    (check_scheme.operator()<kAll<Scheme>[i]>(), ...);
   }
-  (std::make_index_sequence<kSchemes.size()>{});
+  (std::make_index_sequence<kAll<Scheme>.size()>{});
   CHECK((strapdown_function({}) == &strapdown_step<>));
 }
 

@@ -15,6 +15,6 @@ int main() {
   increment.dt_s = 0.01;
   increment.dv_b_mps.z() = -0.098;
   const leeway::Verdict verdict = navigator.push(increment);
-  std::printf("navigator says %s\n", leeway::name(verdict).data());
+  std::printf("navigator says %s\n", name(verdict).data());
   return verdict == leeway::Verdict::kAligning ? 0 : 1;
 }

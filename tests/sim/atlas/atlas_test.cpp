@@ -73,11 +73,13 @@ TEST_CASE("atlas: an unknown scene is refused with the nearest one") {
                        doctest::Contains("did you mean 'parked-rtk'?"), Error);
 }
 
-TEST_CASE("atlas: keys are unique, every scene has limits with a reason and a page") {
+TEST_CASE("atlas: keys and places are unique, every scene has limits with a reason and a page") {
   std::set<std::string> keys;
+  std::set<int> places;
   for (const AtlasScene& scene : atlas_scenes()) {
     CAPTURE(scene.key);
     CHECK(keys.insert(scene.key).second);
+    CHECK(places.insert(scene.place).second);
     CHECK(scene.limits.survives < scene.limits.degrades);
     CHECK(!scene.limits.reason.empty());
     const std::filesystem::path page = kDocs / "atlas" / (scene.key + ".md");

@@ -78,6 +78,7 @@ TEST_CASE("compare refuses what it cannot do, and says what to do") {
     CHECK(outcome.out.empty());
   }
   CHECK(contains(leeway("compare").err, "--scene is required"));
+  CHECK(contains(leeway(compare("--csv v.csv")).err, "--csv: gone: use --json"));
   const Outcome several = leeway(compare("--imu marine,tactical"));
   CHECK(several.exit_code == 1);
   CHECK(contains(several.err, "one IMU"));

@@ -60,6 +60,18 @@ TEST_CASE("fuse reads back what simulate wrote: errors of the size of the fixes"
   CHECK(!std::filesystem::exists(dir / "solution.csv.gz.partial"));
 }
 
+TEST_CASE("fuse --scheme takes the names of filter files and compare; an old one with a note") {
+  const auto fused_by = [](const std::string& scheme) {
+    const Outcome outcome = leeway(simulated().fuse() + " --json --scheme " + scheme);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.json().at("input").at("scheme") == "runge-kutta-4");
+    return outcome.err;
+  };
+  CHECK(fused_by("runge-kutta-4").empty());
+  CHECK(fused_by("runge_kutta_4") == "leeway: note: runge_kutta_4 is now written runge-kutta-4\n");
+  CHECK(fused_by("rk4") == "leeway: note: rk4 is now written runge-kutta-4\n");
+}
+
 TEST_CASE("fuse prints tables with units, and says what errors are measured against") {
   const TempDir dir;
   const auto outages = dir.file("outages.json", R"([{"start_s": 80, "duration_s": 20}])");

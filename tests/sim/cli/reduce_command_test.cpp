@@ -90,7 +90,7 @@ TEST_CASE("reduce and --filter refuse what they cannot do, and say what to do") 
   const Outcome misspelt = leeway(reduce_model("--filter " + quoted(dir / "bad.toml")));
   CHECK(misspelt.exit_code == 1);
   CHECK(contains(misspelt.err, "bad.toml:2"));
-  CHECK(contains(misspelt.err, "two_sample"));
+  CHECK(contains(misspelt.err, "two-sample"));
   std::ofstream(dir / "none.toml") << "[scene]\n";
   CHECK(contains(leeway(reduce_model("--filter " + quoted(dir / "none.toml"))).err, "[filter]"));
   CHECK(leeway(reduce_model("--filter " + quoted(dir / "absent.toml"))).exit_code == 1);

@@ -55,10 +55,10 @@ double claimed_sigma_m(const TrialPlan& plan, const RecordedTrial& trial, double
   Variant variant;
   variant.covariance_interval_s = interval_s;
   TrialScore score;
-  make_variant_run(variant, plan.scene().filter, trial.start)
-      ->replay(trial, [&score](const Estimate& truth, const Estimate& e, const ErrorMatrix* P) {
-        score_epoch(score, truth, e, P);
-      });
+  run_variant(variant, plan.scene().filter, trial.start, trial,
+              [&score](const Estimate& truth, const Estimate& e, const ErrorMatrix* P) {
+                score_epoch(score, truth, e, P);
+              });
   REQUIRE(score.epochs > 0);
   return std::sqrt(score.variance_n_m2.head<2>().sum() / static_cast<double>(score.epochs));
 }
@@ -81,7 +81,7 @@ TEST_CASE(
     "every kernel runs the invariant EKF, which errs as the plain one with fixes every second") {
   const Scene scene = loop_scene(ImuClass::kTactical, 120.0, 1.0, 3);
   std::vector<Variant> variants{Variant{}};
-  for (const KernelForm kernel : {KernelForm::kDense, KernelForm::kSymmetric, KernelForm::kUd}) {
+  for (const KernelForm kernel : kAll<KernelForm>) {
     variants.push_back({.estimator = Estimator::kInvariantEkf, .kernel = kernel});
   }
   const auto accuracies = accuracy_of(variants, scene);
@@ -131,7 +131,7 @@ TEST_CASE("a lower rate is the same sensor read less often") {
 
 TEST_CASE("P ten times a second instead of fifty changes what is claimed by less than 1 %" *
           doctest::test_suite("heavy")) {
-  for (const ImuClass imu : kImuClasses) {
+  for (const ImuClass imu : kAll<ImuClass>) {
     CAPTURE(name(imu));
     const TrialPlan plan(loop_scene(imu, 600.0, 10.0, 1));
     const RecordedTrial trial = record_trial(plan, 1);

@@ -252,7 +252,7 @@ TEST_CASE("the reduced filter in a campaign errs as it does in the budget") {
       full_model(scene), {ModelTerm::kFifthRate, ModelTerm::kTenthCovariance, ModelTerm::kBiasDecay,
                           ModelTerm::kCoriolis, ModelTerm::kSculling});
   const TrialPlan plan(scene, {}, 1);
-  const MeasuredAccuracy in_budget = measured({{&plan, model}}, 1, {}).front();
+  const MeasuredAccuracy in_budget = measured({case_of(plan, model)}, 1, {}).front();
   Scene reduced = with_model(scene, model);
   reduced.filter.gate_probability = 0.0;
   const CampaignResult campaigned = campaign(reduced);

@@ -310,7 +310,7 @@ TEST_CASE("mistakes in a scene are refused with line, column and what was meant"
       {kStill + "[imu\n", ":3:", "scene.toml"},
       {all + "[gnas]\n", ":5:", "did you mean 'gnss'"},
       {"trajectory = 1\n" + kImu, ":1:14", "must be a section"},
-      {"[trajectory]\ntype = \"sqare_loop\"\n" + kImu, ":2:8", "did you mean 'square_loop'"},
+      {"[trajectory]\ntype = \"sqare_loop\"\n" + kImu, ":2:8", "did you mean 'square-loop'"},
       {"[trajectory]\ntyp = \"static\"\n" + kImu, ":2:1", "did you mean 'type'"},
       {"[trajectory]\n" + kImu, ":1:1", "needs type"},
       {"[trajectory]\ntype = \"static\"\nspeed_mps = 3\n" + kImu, ":3:1", "unknown key"},

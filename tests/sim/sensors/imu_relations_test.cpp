@@ -36,8 +36,8 @@ TEST_CASE("relations: no part, class or example comes within a factor of 2 of a 
     CAPTURE(part.name);
     CHECK(holds(imu_model(part), kRoom));
   }
-  for (const ImuClass c : kImuClasses) {
-    for (const RangeEnd end : kRangeEnds) {
+  for (const ImuClass c : kAll<ImuClass>) {
+    for (const RangeEnd end : kAll<RangeEnd>) {
       CAPTURE(name(c));
       CHECK(holds(imu_class_model(c, end), kRoom));
     }

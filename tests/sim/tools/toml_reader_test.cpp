@@ -12,9 +12,12 @@ namespace {
 using test::contains;
 using test::near;
 
+enum class Kind { kCar, kTrain };
+constexpr auto names(Kind) { return std::array{"car", "train"}; }
+
 constexpr Quantity kDuration{"duration", {&units::kS, &units::kMin}, between(1.0, 1e5)};
 constexpr Quantity kSigma{"sigma", {&units::kMg, &units::kUg}, zero_or(1e-6, 10.0)};
-constexpr Quantity kOffset{"offset", {&units::kM, &units::kKm}, zero_or_size(1e-3, 1e4)};
+constexpr Quantity kOffset{"offset", {&units::kM, &units::kKm}, between(-1e4, 1e4)};
 constexpr Quantity kShare{"share", {}, between(0.0, 0.5)};
 
 /// The message of the Error when text is read so, or "".
@@ -42,13 +45,12 @@ TEST_CASE("toml reader: numbers come in SI, whichever unit they are given in") {
 }
 
 TEST_CASE("toml reader: the other kinds of value, and what is absent") {
-  constexpr std::array<std::string_view, 2> kKinds{"car", "train"};
   std::vector<double> starts_s;
   const auto read = [&](TomlSection& s) {
     CHECK(s.integer("trials", 1, 100) == 7);
     CHECK(s.boolean("quiet") == true);
     CHECK(s.text("name") == "a car");
-    CHECK(s.choice("kind", kKinds) == 1);
+    CHECK(s.choice<Kind>("kind") == Kind::kTrain);
     CHECK(s.numbers(kDuration, 2) == std::vector{60.0, 120.0});
     CHECK(s.table("gnss", [](TomlSection& gnss) { CHECK(gnss.number(kShare) == 0.5); }));
     CHECK(s.tables("outage", [&](TomlSection& outage) {
@@ -57,7 +59,7 @@ TEST_CASE("toml reader: the other kinds of value, and what is absent") {
     CHECK(!s.integer("absent", 0, 1));
     CHECK(!s.boolean("absent"));
     CHECK(!s.text("absent"));
-    CHECK(!s.choice("absent", kKinds));
+    CHECK(!s.choice<Kind>("absent"));
     CHECK(!s.number(kSigma));
     CHECK(!s.table("absent", [](TomlSection&) { CHECK(false); }));
     CHECK(s.tables("absent", [](TomlSection&) { CHECK(false); }) == 0);
@@ -84,7 +86,6 @@ TEST_CASE("toml reader: numbers that are refused, and the unit that was likely m
        "must be 0, or at least 0.101972 like that of a real sensor; did you "
        "mean 'sigma_mg'?"},
       {"offset_m = -2e4", "from -10000 to 10000"},
-      {"offset_m = -1e-4", "must be 0, or at least 0.001"},
       {"share = inf", "is inf"},
       {"share = 9223372036854775807", "is 9.22337e+18"},
       {"share = '0.1'", ":1:9: 'share' has another type than wanted: must be a number from 0 to"},
@@ -104,11 +105,10 @@ TEST_CASE("toml reader: numbers that are refused, and the unit that was likely m
 }
 
 TEST_CASE("toml reader: other values that are refused") {
-  constexpr std::array<std::string_view, 2> kKinds{"car", "train"};
   const auto read = [&](TomlSection& s) {
     s.integer("trials", 1, 100);
     s.boolean("quiet");
-    s.choice("kind", kKinds);
+    s.choice<Kind>("kind");
     s.numbers(kShare, 2);
     s.table("gnss", [](TomlSection& gnss) { gnss.required(gnss.number(kDuration)); });
     s.tables("outage", [](TomlSection& outage) { outage.number(kShare); });

@@ -30,8 +30,8 @@ TEST_CASE("[seed Table 2] as printed stands beside the other readings" *
           doctest::test_suite("heavy")) {
   constexpr std::array kErrors{0.9, 3.1, 10.2, 87.3, 867.7};
   constexpr std::array kTimes{980.0, 580.0, 325.0, 110.0, 35.0};
-  for (std::size_t i = 0; i < kImuClasses.size(); ++i) {
-    const DriftRow& row = find(study(), kImuClasses[i], RangeEnd::kLow, DriftReading::kPaper);
+  for (std::size_t i = 0; i < kAll<ImuClass>.size(); ++i) {
+    const DriftRow& row = find(study(), kAll<ImuClass>[i], RangeEnd::kLow, DriftReading::kPaper);
     CHECK(row.error_100s_m == kErrors[i]);
     CHECK(row.time_to_100m_s == kTimes[i]);
   }
@@ -41,10 +41,10 @@ TEST_CASE("[seed Table 2] as printed stands beside the other readings" *
 TEST_CASE("the paper's assumptions give 0.866 b t^2 within 1 %" * doctest::test_suite("heavy")) {
   // 0.5 sqrt(3) b t^2; at 100 s the Earth's gravity field changes it by under 0.3 %.
   constexpr std::array kLowDriftMps2{1e-4, 3e-4, 1e-3, 1e-2, 1e-1};
-  for (std::size_t i = 0; i < kImuClasses.size(); ++i) {
+  for (std::size_t i = 0; i < kAll<ImuClass>.size(); ++i) {
     CAPTURE(i);
     const DriftRow& row =
-        find(study(), kImuClasses[i], RangeEnd::kLow, DriftReading::kPaperAssumptions);
+        find(study(), kAll<ImuClass>[i], RangeEnd::kLow, DriftReading::kPaperAssumptions);
     const double expected_m = 0.5 * std::sqrt(3.0) * kLowDriftMps2[i] * 1e4;
     CHECK(test::near(row.error_100s_m, expected_m, 0.01 * expected_m));
     CHECK(row.error_100s_p2_5_m == row.error_100s_m);
@@ -76,9 +76,9 @@ TEST_CASE("the complete model agrees with the independent reference within its M
   }
   // 100 m RMS after 106, 61 and 35 s; error grows as t^2, so its 10 % are 5 % of the time.
   constexpr std::array kTimes{106.0, 61.0, 35.0};
-  for (std::size_t i = 0; i < kRangeEnds.size(); ++i) {
+  for (std::size_t i = 0; i < kAll<RangeEnd>.size(); ++i) {
     const DriftRow& row =
-        find(study(), ImuClass::kTactical, kRangeEnds[i], DriftReading::kComplete);
+        find(study(), ImuClass::kTactical, kAll<RangeEnd>[i], DriftReading::kComplete);
     CHECK(test::near(row.time_to_100m_s, kTimes[i], 0.05 * kTimes[i]));
   }
 }

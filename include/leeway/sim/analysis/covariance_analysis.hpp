@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
-#include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
@@ -35,8 +35,23 @@ enum class ErrorSource {
   kGnssCorrelated,    ///< Gauss-Markov, of position
   kGnssVelocity,      ///< white
 };
-
-std::string_view name(ErrorSource source);
+constexpr auto names(ErrorSource) {
+  return std::array{"initial",
+                    "accelerometer_bias",
+                    "accelerometer_drift",
+                    "accelerometer_noise",
+                    "accelerometer_scale",
+                    "accelerometer_misalignment",
+                    "gyro_bias",
+                    "gyro_drift",
+                    "gyro_noise",
+                    "gyro_scale",
+                    "gyro_misalignment",
+                    "gyro_g_sensitivity",
+                    "gnss_position",
+                    "gnss_correlated",
+                    "gnss_velocity"};
+}
 
 /// What one source contributes.
 struct BudgetLine {

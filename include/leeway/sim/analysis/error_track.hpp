@@ -47,6 +47,16 @@ class ErrorTrack {
   /// @pre 0 <= from_s < to_s <= duration.
   Leg leg(double from_s, double to_s) const;
 
+  /// Calls f with the legs from one time to the other. @pre 0 <= from_s, to_s <= duration.
+  template <class F>
+  void follow(double from_s, double to_s, F&& f) const {
+    while (from_s < to_s) {
+      const Leg next = leg(from_s, to_s);
+      f(next);
+      from_s = next.end_s;
+    }
+  }
+
  private:
   struct Piece {
     Eigen::Matrix3d C_eb;

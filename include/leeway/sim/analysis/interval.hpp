@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "leeway/sim/scene/scene.hpp"
 
@@ -42,6 +43,7 @@ struct Interval {
   double step_effect{};
 };
 
+constexpr auto names(Interval::Outcome) { return std::array{"solved", "never", "always"}; }
 /// Solves for each limit by bracketing and secants in log(error) over log(interval), on the
 /// truth-model covariance analysis; the scene's own gnss.interval_s is not used.
 /// @param progress  called with the fraction done

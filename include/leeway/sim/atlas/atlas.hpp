@@ -9,9 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
+
 namespace leeway::sim {
 
 enum class AtlasVerdict { kSurvives, kDegrades, kFails };
+constexpr auto names(AtlasVerdict) { return std::array{"survives", "degrades", "fails"}; }
 
 /// What a variant is of: the columns of the matrix of all scenes.
 enum class AtlasGroup {
@@ -25,10 +28,10 @@ enum class AtlasGroup {
   kInput,       ///< what stands before any filter: configuration, readers, time
   kNotOffered,  ///< a method that the library does not have: what the scene shows failing
 };
-inline constexpr std::size_t kAtlasGroups = 9;
-
-std::string_view name(AtlasVerdict verdict);
-std::string_view name(AtlasGroup group);
+constexpr auto names(AtlasGroup) {
+  return std::array{"Navigator", "Ekf",       "kernels, double", "kernels, float", "invariant EKF",
+                    "reset",     "strapdown", "input",           "not offered"};
+}
 
 /// One variant under one condition of a scene.
 struct AtlasCell {
@@ -51,6 +54,7 @@ struct AtlasOptions {
 };
 
 struct AtlasScene {
+  int place{};           ///< scenes and their pages are in the order of this number
   std::string key{};     ///< "parked-rtk": of the command line, and the page docs/atlas/KEY.md
   std::string title{};   ///< "Parked with RTK fixes"
   std::string figure{};  ///< what the figure is: "horizontal error over the claimed sigma"
@@ -65,7 +69,7 @@ AtlasVerdict verdict_of(const AtlasLimits& limits, double figure);
 /// A variant that the library offers fails, and no detector says so.
 bool fails_silently(const AtlasLimits& limits, const AtlasCell& cell);
 
-/// All scenes, by the order of the pages.
+/// All scenes, in the order of their places.
 const std::vector<AtlasScene>& atlas_scenes();
 
 /// The scenes of these keys, in the order of atlas_scenes(); all for none.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/trials/campaign.hpp"
@@ -45,8 +46,11 @@ enum class Consistency {
   kDiverged,     ///< a trial with an error beyond ten claimed sigmas
   kNotFinite,    ///< a trial that ended in numbers that are none, or with P not positive
 };
+constexpr auto names(Consistency) {
+  return std::array{"no claim",    "consistent", "optimistic",
+                    "pessimistic", "diverged",   "not finite"};
+}
 
-std::string_view name(Consistency consistency);
 Consistency consistency_of(const Accuracy& accuracy);
 
 struct Compared {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "leeway/covariance/covariance_kernel.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/strapdown/strapdown.hpp"
 
 namespace leeway::sim {
@@ -16,6 +17,7 @@ enum class Estimator {
   kInvariantEkf,  ///< InvariantEkf: the same on the error of SE_2(3)
   kReset,         ///< ResetFilter: the seed's separate scheme
 };
+constexpr auto names(Estimator) { return std::array{"ekf", "invariant", "reset"}; }
 
 struct Variant {
   Estimator estimator{Estimator::kEkf};
@@ -31,12 +33,9 @@ struct Variant {
 /// Whether the kernel has a choice of update forms.
 bool has_update_forms(KernelForm kernel);
 
-/// "two-sample".
-std::string_view name(Scheme scheme);
-
 /// Names every choice that the variant has, and no other: two variants of a name run alike.
 /// "two-sample/normal/turning/50Hz symmetric/joseph/double/0.1s". No comma, no quote.
-std::string name(const Variant& variant, double imu_rate_hz);
+std::string variant_name(const Variant& variant, double imu_rate_hz);
 
 /// Every scheme, gravity, Earth rotation and IMU rate, on the default covariance.
 std::vector<Variant> strapdown_variants(const std::vector<int>& imu_dividers);

@@ -4,10 +4,17 @@
 /// parameter is finite and in the range given at it.
 #pragma once
 
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
 
 namespace leeway::sim {
+
+/// The motions that a study can ask for. The first five have no end of their own.
+enum class TrajectoryKind { kStatic, kStraight, kCircle, kSquareLoop, kCar, kWaypoints, kRecorded };
+constexpr auto names(TrajectoryKind) {
+  return std::array{"static", "straight", "circle", "square-loop", "car", "waypoints", "recorded"};
+}
 
 inline constexpr Geodetic kDefaultOrigin{45.0 * kRadPerDeg, 37.6 * kRadPerDeg, 100.0};
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/sim/compare/compare.hpp"
 #include "leeway/sim/scene/scene.hpp"
 
@@ -39,8 +40,19 @@ enum class ModelTerm {
   kMisalignments,      ///< likewise
   kGSensitivity,       ///< of the gyros, likewise
 };
-
-std::string_view name(ModelTerm term);
+constexpr auto names(ModelTerm) {
+  return std::array{"earth_rotation",    "coriolis",
+                    "gravity_beyond_j2", "gravity_beyond_constant",
+                    "gravity_gradient",  "coning",
+                    "sculling",          "integration_order",
+                    "imu_rate_half",     "imu_rate_fifth",
+                    "covariance_0_1_s",  "covariance_1_s",
+                    "double_precision",  "accelerometer_bias",
+                    "gyro_bias",         "bias_decay",
+                    "bias_drive",        "lever_arm",
+                    "latency",           "scale_factors",
+                    "misalignments",     "g_sensitivity"};
+}
 
 /// What the filter does without the term.
 std::string_view substitute(ModelTerm term);

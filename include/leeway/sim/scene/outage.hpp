@@ -6,12 +6,18 @@
 #include <filesystem>
 #include <vector>
 
+#include "leeway/earth/fields.hpp"
+
 namespace leeway::sim {
 
 /// A GNSS outage: fixes with start < t <= start + duration are withheld.
 struct Outage {
   double start_s{};
   double duration_s{};
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"start_s", c.start_s}, Field{"duration_s", c.duration_s, kPositive});
+  }
 };
 
 /// [{"start_s": .., "duration_s": ..}, ..] @throws Error naming file, entry and what is wrong.

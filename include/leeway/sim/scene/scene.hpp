@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "leeway/earth/fields.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/model/initial_covariance.hpp"
@@ -25,6 +26,13 @@ struct GnssScenario {
   std::vector<Outage> outages{};    ///< no fixes within them
   double outlier_probability{0.0};  ///< of a fix
   double outlier_sigma_m{50.0};     ///< 1 sigma per axis that an outlier adds to the position
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"errors", c.errors}, Field{"interval_s", c.interval_s, between(1e-3, 1e6)},
+                   Field{"latency_s", c.latency_s, between(0.0, 60.0)}, Field{"outages", c.outages},
+                   Field{"outlier_probability", c.outlier_probability, between(0.0, 0.5)},
+                   Field{"outlier_sigma_m", c.outlier_sigma_m, between(0.0, 1e6)});
+  }
 };
 
 /// The largest horizontal error allowed just before a fix is used.
@@ -32,6 +40,11 @@ struct ErrorLimit {
   HorizontalMetric metric{HorizontalMetric::kDrms};
   double limit_m{10.0};
   double last_s{480.0};  ///< fixes this close to the end of the scene count, as scored_part_s()
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"metric", c.metric}, Field{"limit_m", c.limit_m, positive_to(1e6)},
+                   Field{"last_s", c.last_s, positive_to(1e6)});
+  }
 };
 
 struct Scene {
@@ -48,6 +61,17 @@ struct Scene {
   ErrorLimit limit{};
   int trials{200};
   std::uint64_t first_seed{1};  ///< trial k has seed first_seed + k
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"name", c.name}, NoData{} /* trajectory */,
+                   Field{"duration_s", c.duration_s, kPositive},
+                   Field{"imu_rate_hz", c.imu_rate_hz, between(1.0, 1e4)},
+                   Field{"imu_name", c.imu_name}, Field{"imu", c.imu}, Field{"gnss", c.gnss},
+                   Field{"filter", c.filter},
+                   Field{"imu_divider", c.imu_divider, between(1.0, 1e3)},
+                   Field{"initial", c.initial}, Field{"limit", c.limit},
+                   Field{"trials", c.trials, between(1.0, 1e9)}, Field{"first_seed", c.first_seed});
+  }
 };
 
 /// @throws Error naming the field, its value and the allowed range.

@@ -2,9 +2,7 @@
 /// Models of a bias after turn-on: two readings of the same datasheet figure.
 #pragma once
 
-#include <array>
-#include <string_view>
-
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway::sim {
@@ -14,14 +12,9 @@ enum class BiasModel {
   kConstant,     ///< keeps its turn-on value
   kGaussMarkov,  ///< wanders, with the same sigma at every moment
 };
+constexpr auto names(BiasModel) { return std::array{"constant", "gauss_markov"}; }
 
-inline constexpr std::array kBiasModels{BiasModel::kConstant, BiasModel::kGaussMarkov};
 inline constexpr double kBiasTauS = 3600.0;  ///< default correlation time of the wandering
-
-std::string_view name(BiasModel model);
-
-/// The bias model of that name. @throws Error listing the known names.
-BiasModel bias_model_from_name(std::string_view name);
 
 /// The bias model of an error model: kGaussMarkov where it has an in-run drift.
 BiasModel bias_model_of(const ImuErrorModel& model);

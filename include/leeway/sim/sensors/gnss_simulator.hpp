@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "leeway/earth/fields.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
 #include "leeway/sim/tools/random.hpp"
@@ -19,6 +20,14 @@ struct GnssErrorModel {
   Eigen::Vector3d correlated_sigma_n_m{0.0, 0.0, 0.0};     ///< Gauss-Markov, in position, >= 0
   double correlation_time_s{60.0};                         ///< of the Gauss-Markov process, > 0
   Eigen::Vector3d lever_arm_b_m{0.0, 0.0, 0.0};            ///< IMU to antenna
+
+  static auto visit(auto& c, const auto& visitor) {
+    return visitor(Field{"position_sigma_n_m", c.position_sigma_n_m, kNotNegative},
+                   Field{"velocity_sigma_n_mps", c.velocity_sigma_n_mps, kPositive},
+                   Field{"correlated_sigma_n_m", c.correlated_sigma_n_m, kNotNegative},
+                   Field{"correlation_time_s", c.correlation_time_s, kPositiveOrInfinite},
+                   Field{"lever_arm_b_m", c.lever_arm_b_m});
+  }
 };
 
 /// Validation of the model. On each axis the white or the correlated position sigma must be > 0, or

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/earth/units.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
@@ -15,6 +16,7 @@ namespace leeway::sim {
 
 /// The two triads of sensors of an IMU.
 enum class Triad { kAccelerometer, kGyro };
+constexpr auto names(Triad) { return std::array{"accelerometer", "gyro"}; }
 
 /// Fields of an error model that a datasheet can fill.
 enum class ModelField {
@@ -26,6 +28,10 @@ enum class ModelField {
   kMisalignmentSigma,
   kGSensitivitySigma  ///< of the gyro only
 };
+constexpr auto names(ModelField) {
+  return std::array{"bias_sigma",  "in_run_sigma",       "in_run_tau",         "noise",
+                    "scale_sigma", "misalignment_sigma", "g_sensitivity_sigma"};
+}
 
 /// Meaning of a printed number, which decides how it is converted to the field.
 enum class Meaning {
@@ -34,6 +40,7 @@ enum class Meaning {
   kAllanMinimum,  ///< in-run bias (in)stability: the lowest point of the Allan deviation
   kAssumed        ///< printed nowhere: assumed, so that the model is not too good
 };
+constexpr auto names(Meaning) { return std::array{"", "maximum", "Allan minimum", "assumed"}; }
 
 /// One printed number and the field it fills.
 struct DatasheetValue {
@@ -56,6 +63,9 @@ inline constexpr double kAllanPeak = 0.6173642831444414;
 
 /// Accuracy grades, as manufacturers use them.
 enum class Grade { kConsumer, kIndustrial, kTactical, kNavigation };
+constexpr auto names(Grade) {
+  return std::array{"consumer", "industrial", "tactical", "navigation"};
+}
 
 /// An IMU of the catalogue.
 struct ImuPart {
@@ -67,11 +77,6 @@ struct ImuPart {
   std::string_view checked{};     ///< the numbers that were compared with a copy of it
   std::span<const DatasheetValue> values{};
 };
-
-std::string_view name(Triad triad);
-std::string_view name(ModelField field);  ///< as in a model file: "bias_sigma"
-std::string_view name(Meaning meaning);
-std::string_view name(Grade grade);
 
 /// All parts, from the least to the most accurate.
 std::span<const ImuPart> imu_parts();

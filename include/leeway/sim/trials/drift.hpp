@@ -5,9 +5,9 @@
 
 #include <cstdint>
 #include <functional>
-#include <string_view>
 #include <vector>
 
+#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_class.hpp"
 
 namespace leeway::sim {
@@ -29,8 +29,7 @@ enum class DriftReading {
   /// Per-axis random-constant biases of both sensors and their noise, 3-D RMS over the trials.
   kComplete,
 };
-
-std::string_view name(DriftReading reading);
+constexpr auto names(DriftReading) { return std::array{"paper", "paper_assumptions", "complete"}; }
 
 /// A cell pair of the table. Percentiles are those of single trials; for the other readings they
 /// equal the error. NaN where the reading gives none.

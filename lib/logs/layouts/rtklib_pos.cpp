@@ -1,5 +1,3 @@
-#include "lib/logs/rtklib_pos.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -12,8 +10,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "lib/logs/csv_header.hpp"
-#include "lib/logs/log_columns.hpp"
+#include "lib/logs/layouts/gnss_layouts.hpp"
 
 namespace leeway {
 namespace {
@@ -37,48 +34,32 @@ enum Slot {
   kRtklibSlots = 22
 };
 
+/// Columns by their slots, and the limits of the coordinates.
+struct Frame {
+  std::array<std::string_view, kMinutes> names;
+  std::array<double, 3> limits;
+};
+constexpr Frame kGeodetic{
+    {"latitude", "longitude", "height", "sdn", "sde", "sdu", "sdne", "sdeu", "sdun", "vn", "ve",
+     "vu", "sdvn", "sdve", "sdvu", "sdvne", "sdveu", "sdvun"},
+    {90.0, 360.0, kMaxHeightM}};
+constexpr Frame kEcef{{"x-ecef", "y-ecef", "z-ecef", "sdx", "sdy", "sdz", "sdxy", "sdyz", "sdzx",
+                       "vx", "vy", "vz", "sdvx", "sdvy", "sdvz", "sdvxy", "sdvyz", "sdvzx"},
+                      {1e7, 1e7, 1e7}};
+
 constexpr Column optional(int slot) { return {slot, -kMaxSigma, kMaxSigma, true}; }
-constexpr Column coordinate(int slot, double limit) { return {slot, -limit, limit}; }
 
-constexpr std::array kGeodeticPosition{NamedColumn{"latitude", coordinate(kPosition, 90.0)},
-                                       NamedColumn{"longitude", coordinate(kPosition + 1, 360.0)},
-                                       NamedColumn{"height", coordinate(kPosition + 2, 1e5)},
-                                       NamedColumn{"sdn", sigma_column(kSigma)},
-                                       NamedColumn{"sde", sigma_column(kSigma + 1)},
-                                       NamedColumn{"sdu", sigma_column(kSigma + 2)}};
-constexpr std::array kEcefPosition{NamedColumn{"x-ecef", coordinate(kPosition, 1e7)},
-                                   NamedColumn{"y-ecef", coordinate(kPosition + 1, 1e7)},
-                                   NamedColumn{"z-ecef", coordinate(kPosition + 2, 1e7)},
-                                   NamedColumn{"sdx", sigma_column(kSigma)},
-                                   NamedColumn{"sdy", sigma_column(kSigma + 1)},
-                                   NamedColumn{"sdz", sigma_column(kSigma + 2)}};
-
-// RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
-constexpr std::array kGeodeticRest{NamedColumn{"sdne", optional(kCovariance)},
-                                   NamedColumn{"sdeu", optional(kCovariance + 1)},
-                                   NamedColumn{"sdun", optional(kCovariance + 2)},
-                                   NamedColumn{"sdue", optional(kCovariance + 2)},
-                                   NamedColumn{"vn", optional(kVelocity)},
-                                   NamedColumn{"ve", optional(kVelocity + 1)},
-                                   NamedColumn{"vu", optional(kVelocity + 2)},
-                                   NamedColumn{"sdvn", optional(kVelocitySigma)},
-                                   NamedColumn{"sdve", optional(kVelocitySigma + 1)},
-                                   NamedColumn{"sdvu", optional(kVelocitySigma + 2)},
-                                   NamedColumn{"sdvne", optional(kVelocityCovariance)},
-                                   NamedColumn{"sdveu", optional(kVelocityCovariance + 1)},
-                                   NamedColumn{"sdvun", optional(kVelocityCovariance + 2)}};
-constexpr std::array kEcefRest{NamedColumn{"sdxy", optional(kCovariance)},
-                               NamedColumn{"sdyz", optional(kCovariance + 1)},
-                               NamedColumn{"sdzx", optional(kCovariance + 2)},
-                               NamedColumn{"vx", optional(kVelocity)},
-                               NamedColumn{"vy", optional(kVelocity + 1)},
-                               NamedColumn{"vz", optional(kVelocity + 2)},
-                               NamedColumn{"sdvx", optional(kVelocitySigma)},
-                               NamedColumn{"sdvy", optional(kVelocitySigma + 1)},
-                               NamedColumn{"sdvz", optional(kVelocitySigma + 2)},
-                               NamedColumn{"sdvxy", optional(kVelocityCovariance)},
-                               NamedColumn{"sdvyz", optional(kVelocityCovariance + 1)},
-                               NamedColumn{"sdvzx", optional(kVelocityCovariance + 2)}};
+/// The columns of the slots from the first to before the last.
+std::vector<NamedColumn> columns_of(const Frame& frame, int first, int last) {
+  std::vector<NamedColumn> columns;
+  for (int slot = first; slot < last; ++slot) {
+    const auto at = static_cast<std::size_t>(slot);
+    Column column = slot < kCovariance ? sigma_column(slot) : optional(slot);
+    if (slot < kSigma) column = {slot, -frame.limits[at], frame.limits[at]};
+    columns.push_back({frame.names[at], column});
+  }
+  return columns;
+}
 
 bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
@@ -182,7 +163,28 @@ std::optional<LineDamage> parse_day_or_week(const char*& p, const char* end, Dur
   return std::nullopt;
 }
 
-}  // namespace
+/// Field names, time system and options are told by the lines that start with '%'.
+/// Source: RTKLIB ver. 2.4.2 Manual, appendix B.1.
+class RtklibParser {
+ public:
+  /// @throws Error on an e/n/u baseline, a geodetic height or a datum other than WGS-84, or a
+  /// column header without a position and its standard deviations.
+  void read_header(std::string_view line, const std::string& path);
+
+  bool has_columns() const { return has_columns_; }
+
+  std::optional<Fault> operator()(std::string_view line, GnssFix& fix) const;
+
+ private:
+  void read_columns(std::string_view line, const std::string& path);
+  std::optional<Fault> parse_epoch(std::string_view& line, Time& time) const;
+
+  LineParser fields_{};
+  Duration to_gps_{0};  // from the log's calendar
+  bool is_utc_{false};
+  bool is_ecef_{false};
+  bool has_columns_{false};
+};
 
 void RtklibParser::read_header(std::string_view line, const std::string& path) {
   if (contains(line, "baseline=") || contains(line, "e-baseline(")) {
@@ -212,12 +214,12 @@ void RtklibParser::read_columns(std::string_view line, const std::string& path) 
     if (is_dms && name.ends_with("itude")) names += name + "_min," + name + "_s,";
   }
   CsvHeader header(names, path);
-  const std::span<const NamedColumn> position = is_ecef_ ? kEcefPosition : kGeodeticPosition;
-  if (const auto missing = header.missing(position); !missing.empty()) {
-    throw Error(path + ": missing columns " + join(missing) + " in its RTKLIB header");
-  }
-  header.use(position);
-  header.use(is_ecef_ ? std::span<const NamedColumn>(kEcefRest) : kGeodeticRest);
+  const Frame& frame = is_ecef_ ? kEcef : kGeodetic;
+  const auto needed = columns_of(frame, kPosition, kCovariance);
+  header.require(needed, "an RTKLIB header with " + join(needed));
+  header.use(columns_of(frame, kCovariance, kMinutes));
+  // RTKLIB heads the last covariance of a d m s layout "sdue" by mistake.
+  header.use(std::array{NamedColumn{"sdue", optional(kCovariance + 2)}});
   if (is_dms) {
     header.use(std::array{NamedColumn{"latitude_min", {kMinutes, 0.0, 60.0}},
                           NamedColumn{"latitude_s", {kSeconds, 0.0, 60.0}},
@@ -266,6 +268,23 @@ std::optional<Fault> RtklibParser::parse_epoch(std::string_view& line, Time& tim
   time = Time{since_epoch + to_gps_};
   line.remove_prefix(static_cast<std::size_t>(p - line.data()));
   return std::nullopt;
+}
+
+bool is_rtklib(const LogHead& head) {
+  return !head.comments.empty() && head.comments.front().starts_with('%');
+}
+
+RowParser<GnssFix> rtklib_parser(const LogHead& head, LineReader& lines) {
+  RtklibParser parser;
+  for (const std::string& line : head.comments) parser.read_header(line, lines.path());
+  if (parser.has_columns()) return parser;
+  throw Error(lines.path() + ": no RTKLIB column header; set the RTKLIB option out-outhead to on");
+}
+
+}  // namespace
+
+GnssLayout rtklib_pos() {
+  return {"RTKLIB .pos", "RTKLIB .pos with its header", is_rtklib, rtklib_parser};
 }
 
 }  // namespace leeway

@@ -1,0 +1,58 @@
+/// @file
+/// Layouts of a log: how one is told, and read. Private to the log readers.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "leeway/logs/line_reader.hpp"
+#include "lib/logs/text_fields.hpp"
+
+namespace leeway {
+
+/// What a log begins with, by which its layout is told.
+struct LogHead {
+  std::vector<std::string> comments{};  ///< lines before the first that carries something
+  std::string line{};                   ///< that one; empty in a log without any
+};
+
+/// The head of a log; next() then delivers its line again.
+LogHead read_head(LineReader& lines);
+
+/// The line of the head, for layouts that must have one.
+/// @throws Error when there is none, saying what was expected.
+std::string first_line(LineReader& lines, const std::string& expected);
+
+/// A number first, and no comma: no CSV, and no header.
+bool is_bare_numbers(std::string_view line);
+
+/// One layout of a kind of log: a row of the table of its reader.
+template <class Row>
+struct LogLayout {
+  std::string_view name{};  ///< for users: "KF-GINS text"
+  std::string expected{};   ///< what such a log has, for error messages
+  bool (*sniff)(const LogHead& head){};
+  /// Leaves the lines at the first row. @throws Error when the log lacks what the layout must have.
+  RowParser<Row> (*parser)(const LogHead& head, LineReader& lines){};
+};
+
+/// The last layout of the table that recognizes the head: the first of them must take anything.
+template <class Row>
+const LogLayout<Row>& layout_of(const LogHead& head, const std::vector<LogLayout<Row>>& layouts) {
+  return *std::find_if(layouts.rbegin(), layouts.rend(),
+                       [&](const LogLayout<Row>& layout) { return layout.sniff(head); });
+}
+
+/// "a, b, or c".
+template <class Row>
+std::string list_of(const std::vector<LogLayout<Row>>& layouts) {
+  std::string list = layouts.front().expected;
+  for (std::size_t k = 1; k < layouts.size(); ++k) {
+    list += (k + 1 == layouts.size() ? ", or " : ", ") + layouts[k].expected;
+  }
+  return list;
+}
+
+}  // namespace leeway

@@ -1,0 +1,28 @@
+/// @file
+/// A GNSS fix as linear analyses take it: six rows in units of what the filter takes for its noise.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "leeway/model/error_state.hpp"
+#include "leeway/sim/sensors/gnss_simulator.hpp"
+
+namespace leeway::sim {
+
+/// Rows are north, east, down of the position, then of the velocity.
+/// innovation = H x + per_sigma * (error of the receiver).
+struct FixRows {
+  Eigen::Matrix<double, 6, kErrorStates> H{Eigen::Matrix<double, 6, kErrorStates>::Zero()};
+  Eigen::Matrix<double, 6, 1> per_sigma{Eigen::Matrix<double, 6, 1>::Zero()};
+};
+
+/// Variances of a fix by row, as the receiver reports them, m^2 and m^2/s^2.
+Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors);
+
+/// The rows of a fix in a state of the vehicle.
+/// @param lever_arm_b_m  IMU to antenna
+/// @param weight         of the position, by PositionWeight
+FixRows fix_rows(const NavState& nav, const Eigen::Vector3d& omega_ib_b_radps,
+                 const Eigen::Vector3d& lever_arm_b_m, const GnssErrorModel& errors, double weight);
+
+}  // namespace leeway::sim
