@@ -59,6 +59,14 @@ CLI::Validator positive() {
           ""};
 }
 
+CLI::Validator not_negative() {
+  return {[](std::string& text) {
+            double value = 0.0;
+            return parse_numbers(text, &value, 1) && value >= 0.0 ? "" : text + " is below 0";
+          },
+          ""};
+}
+
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what) {
   app.add_option("--threads", threads, of_what + "0: all processors")
       ->check(CLI::Range(0, 1024))
