@@ -48,8 +48,7 @@ class Analysis {
         track_(track),
         config_(config),
         pair_(scene, config.by_source),
-        window_s_(scored_part_s(scene)),
-        weight_(scene.filter.gnss_correlation_s) {}
+        window_s_(scored_part_s(scene)) {}
 
   CovarianceAnalysis run() {
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
@@ -156,9 +155,11 @@ class Analysis {
 
   void update() {
     const TruthPoint truth = truth_at(scene_.trajectory, now_s_);
+    const double weight =
+        gnss_position_weight(now_s_ - last_fix_s_, scene_.filter.gnss_correlation_s);
+    last_fix_s_ = now_s_;
     pair_.update(fix_rows(truth.nav, truth.omega_ib_b_radps, scene_.filter.lever_arm_b_m,
-                          scene_.gnss.errors, weight_.of(truth.nav.time)));
-    weight_.fused(truth.nav.time);
+                          scene_.gnss.errors, weight));
     ++fixes_;
     if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
   }
@@ -168,8 +169,8 @@ class Analysis {
   const CovarianceConfig& config_;
   SceneCovariance pair_;
   double window_s_;
-  PositionWeight weight_;
   double now_s_{0.0};
+  double last_fix_s_{-std::numeric_limits<double>::infinity()};  // the first fix has weight 1
   std::size_t fixes_{0};
   Window window_{};
   std::optional<Variances> previous_{};

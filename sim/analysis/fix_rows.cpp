@@ -20,9 +20,11 @@ FixRows fix_rows(const NavState& nav, const Eigen::Vector3d& omega_ib_b_radps,
   const Measurement m = gnss_measurement(fix, {nav, {}}, lever_arm_b_m, omega_ib_b_radps);
   const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).transpose();
   FixRows rows;
-  rows.per_sigma = fix_variance(errors).cwiseSqrt().cwiseInverse();
-  rows.per_sigma.head<3>() *= weight;
-  rows.H << C_ne * m.H.topRows<3>(), C_ne * m.H.bottomRows<3>();
+  rows.per_sigma << Eigen::Vector3d::Constant(weight), Eigen::Vector3d::Ones();
+  rows.per_sigma = rows.per_sigma.cwiseQuotient(fix_variance(errors).cwiseSqrt());
+  for (int row = 0; row < 6; ++row) {
+    rows.H.row(row) = C_ne.row(row % 3) * m.H.middleRows<3>(row < 3 ? 0 : 3);
+  }
   rows.H = rows.per_sigma.asDiagonal() * rows.H;
   return rows;
 }

@@ -21,7 +21,7 @@ Eigen::Matrix<double, 6, 1> fix_variance(const GnssErrorModel& errors);
 
 /// The rows of a fix in a state of the vehicle.
 /// @param lever_arm_b_m  IMU to antenna
-/// @param weight         of the position, by PositionWeight
+/// @param weight         of the position, by gnss_position_weight()
 FixRows fix_rows(const NavState& nav, const Eigen::Vector3d& omega_ib_b_radps,
                  const Eigen::Vector3d& lever_arm_b_m, const GnssErrorModel& errors, double weight);
 

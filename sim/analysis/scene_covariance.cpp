@@ -37,14 +37,11 @@ void SceneCovariance::propagate(const Leg& leg) {
 }
 
 void SceneCovariance::update(const FixRows& fix) {
-  FixGains<1> gains = FixGains<1>::Zero();
+  FixGains<1> gains;
   for (int row = 0; row < fix.H.rows(); ++row) {
     const ErrorVector h = fix.H.row(row).transpose();
     const ErrorVector cross = P_ * h;
-    const ErrorVector K = cross / (h.dot(cross) + 1.0);
-    // A row sees what the rows before it have made of the innovations.
-    gains -= K * (h.transpose() * gains).eval();
-    gains.col(row) += K;
+    gains.col(row) = cross / (h.dot(cross) + 1.0);
     ErrorVector none = ErrorVector::Zero();
     scalar_update(P_, none, h, 0.0);
   }

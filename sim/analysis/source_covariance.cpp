@@ -18,12 +18,13 @@ void carry(const Transition& Phi, Errors& X) {
   for_each_filter(X, [&Phi](auto rows, int) { rows = times(Phi, rows); });
 }
 
-/// What a fix without an error of its own leaves.
-template <class Errors, class Gains>
-void fuse(const FixRows& fix, const Gains& gains, Errors& X) {
-  for_each_filter(X, [&](auto rows, int first) {
-    rows -= gains.template middleRows<kErrorStates>(first) * (fix.H * rows).eval();
-  });
+/// What a row measures of every filter's errors.
+template <class Errors>
+auto measured(const ErrorVector& h, const Errors& X) {
+  Eigen::Matrix<double, Errors::RowsAtCompileTime / kErrorStates, Errors::ColsAtCompileTime> all;
+  for_each_filter(
+      X, [&](auto rows, int first) { all.row(first / kErrorStates) = h.transpose() * rows; });
+  return all;
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ void SourceCovariance<kFilters>::let_biases_decay(double dt_s) {
 }
 
 /// g' = phi g + w; a bias state that a filter lets decay by its own phi gains delta g + w on the
-/// filter's idea of it. Filters one after the other, and what they share in w last.
+/// filter's idea of it.
 template <int kFilters>
 void SourceCovariance<kFilters>::step_process(MarkovSource<kFilters>& source, double dt_s) {
   const double phi = bias_decay(dt_s, source.process.tau_s);
@@ -110,38 +111,46 @@ void SourceCovariance<kFilters>::step_process(MarkovSource<kFilters>& source, do
   }
   const double variance = source.process.sigma * source.process.sigma;
   const Eigen::Matrix3d Q = variance * (1.0 - phi * phi) * Eigen::Matrix3d::Identity();
-  for (int filter = 0; filter < kFilters; ++filter) {
-    const int at = filter * kErrorStates + source.enters_at;
-    const double delta = phi - own_decay(filter, source.enters_at, dt_s);
-    P.template middleCols<3>(at) += delta * source.S;
-    P.template middleRows<3>(at) += delta * source.S.transpose();
-    P.template block<3, 3>(at, at) += delta * delta * source.G;
-    source.S.template middleRows<3>(at) += delta * source.G;
+  const auto at = [&](int filter) { return filter * kErrorStates + source.enters_at; };
+  Eigen::Matrix<double, kFilters, 1> delta;
+  for (int i = 0; i < kFilters; ++i) {
+    delta(i) = phi - own_decay(i, source.enters_at, dt_s);
+    P.template middleCols<3>(at(i)) += delta(i) * source.S;
+    P.template middleRows<3>(at(i)) += delta(i) * source.S.transpose();
   }
-  add_shared(source.enters_at, Q);
   source.S *= phi;
-  for_each_filter(source.S,
-                  [&](auto rows, int) { rows.template middleRows<3>(source.enters_at) += Q; });
+  for (int i = 0; i < kFilters; ++i) {
+    for (int j = 0; j < kFilters; ++j) {
+      P.template block<3, 3>(at(i), at(j)) += delta(i) * delta(j) * source.G + Q;
+    }
+    source.S.template middleRows<3>(at(i)) += delta(i) * phi * source.G + Q;
+  }
   source.G = phi * phi * source.G + Q;
 }
 
 /// error' = error - K innovation, in second moments.
 template <int kFilters>
-void SourceCovariance<kFilters>::update(const FixRows& fix, const FixGains<kFilters>& gains) {
-  fuse(fix, gains, P);
-  P.transposeInPlace();
-  fuse(fix, gains, P);
-  const auto white = (fix_variance.array() * fix.per_sigma.array().square()).matrix();
-  P += gains * white.asDiagonal() * gains.transpose();
-  for (MarkovSource<kFilters>& source : processes_) {
-    fuse(fix, gains, source.S);
-    if (source.enters_at != MarkovSource<kFilters>::kFixes) continue;
-    const typename MarkovSource<kFilters>::Cross taken =
-        gains.template leftCols<3>() * fix.per_sigma.head<3>().asDiagonal();
-    const auto crossed = (source.S - 0.5 * taken * source.G).eval();
-    P -= crossed * taken.transpose() + taken * crossed.transpose();
-    source.S -= taken * source.G;
+void SourceCovariance<kFilters>::update(const RowGain<kFilters>& gain) {
+  const double per_sigma = gain.per_sigma;
+  ErrorGains<kFilters> cross;  // E[error innovation^T]
+  for (int i = 0; i < kFilters; ++i) {
+    cross.col(i) = P.template middleCols<kErrorStates>(i * kErrorStates) * gain.h;
   }
+  Eigen::Matrix<double, kFilters, kFilters> variance = measured(gain.h, cross);
+  variance.array() += fix_variance(gain.row) * per_sigma * per_sigma;
+  for (MarkovSource<kFilters>& source : processes_) {
+    auto innovation_g = measured(gain.h, source.S);  // E[innovation g^T]
+    if (source.enters_at == MarkovSource<kFilters>::kFixes && gain.row < 3) {
+      // Of the variance only the symmetric part counts.
+      variance.array().colwise() += 2.0 * per_sigma * innovation_g.col(gain.row).array() +
+                                    per_sigma * per_sigma * source.G(gain.row, gain.row);
+      cross.colwise() += per_sigma * source.S.col(gain.row);
+      innovation_g.rowwise() += per_sigma * source.G.row(gain.row);
+    }
+    source.S -= gain.K * innovation_g;
+  }
+  const ErrorGains<kFilters> half = cross - gain.K * (0.5 * variance);
+  P.noalias() -= gain.K * half.transpose() + half * gain.K.transpose();
 }
 
 template <int kFilters>
@@ -150,8 +159,8 @@ void ParameterSources<kFilters>::propagate(const Leg& leg) {
 }
 
 template <int kFilters>
-void ParameterSources<kFilters>::update(const FixRows& fix, const FixGains<kFilters>& gains) {
-  fuse(fix, gains, S_);
+void ParameterSources<kFilters>::update(const RowGain<kFilters>& gain) {
+  S_ -= gain.K * measured(gain.h, S_);
 }
 
 template class SourceCovariance<1>;

@@ -26,9 +26,22 @@ inline constexpr int kErrorsOf{kErrorStates * (kFilters)};
 template <int kFilters>
 using ErrorMoment = Eigen::Matrix<double, kErrorsOf<kFilters>, kErrorsOf<kFilters>>;
 
-/// Gains of each filter on the innovations of a fix: error' = error - gain innovation.
+/// Gains of each filter on the rows of a fix.
 template <int kFilters>
 using FixGains = Eigen::Matrix<double, kErrorsOf<kFilters>, 6>;
+
+/// What enters the errors through each filter's own innovation, a column each.
+template <int kFilters>
+using ErrorGains = Eigen::Matrix<double, kErrorsOf<kFilters>, kFilters>;
+
+/// One row of a fix and the filters' gains on it: error' = error - K innovation.
+template <int kFilters>
+struct RowGain {
+  int row{};
+  double per_sigma{};
+  ErrorVector h{ErrorVector::Zero()};
+  ErrorGains<kFilters> K{ErrorGains<kFilters>::Zero()};
+};
 
 /// A Gauss-Markov process g of three axes, or a constant (tau infinite), that enters the errors
 /// through a bias state or through the position fixes, and is correlated with them.
@@ -79,7 +92,7 @@ class SourceCovariance {
   bool has_processes() const { return !processes_.empty(); }
 
   void propagate(const Leg& leg);
-  void update(const FixRows& fix, const FixGains<kFilters>& gains);
+  void update(const RowGain<kFilters>& gain);
 
  private:
   void step_processes(double dt_s);
@@ -97,7 +110,7 @@ template <int kFilters>
 class ParameterSources {
  public:
   void propagate(const Leg& leg);
-  void update(const FixRows& fix, const FixGains<kFilters>& gains);
+  void update(const RowGain<kFilters>& gain);
 
   /// @param second_moment  E[p p^T] of the parameters that belong to the source
   ErrorMoment<kFilters> covariance(

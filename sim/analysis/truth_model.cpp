@@ -151,8 +151,16 @@ void TruthModel<kFilters>::propagate(const Leg& leg) {
 
 template <int kFilters>
 void TruthModel<kFilters>::update(const FixRows& fix, const FixGains<kFilters>& gains) {
-  for (auto& [name, source] : sources_) source.update(fix, gains);
-  if (!parameter_moments_.empty()) parameters_.update(fix, gains);
+  for (int row = 0; row < fix.H.rows(); ++row) {
+    RowGain<kFilters> gain{row, fix.per_sigma(row), fix.H.row(row).transpose()};
+    for (int i = 0; i < kFilters; ++i) {
+      const int first = i * kErrorStates;
+      gain.K.col(i).template segment<kErrorStates>(first) =
+          gains.col(row).template segment<kErrorStates>(first);
+    }
+    for (auto& [name, source] : sources_) source.update(gain);
+    if (!parameter_moments_.empty()) parameters_.update(gain);
+  }
 }
 
 template <int kFilters>

@@ -32,6 +32,7 @@ class TruthModel {
                    const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const;
 
   void propagate(const Leg& leg);
+  /// @param gains  on the rows one after the other: each sees the errors that the last one left
   void update(const FixRows& fix, const FixGains<kFilters>& gains);
   ErrorMoment<kFilters> covariance() const;
 

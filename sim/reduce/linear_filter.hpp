@@ -31,7 +31,7 @@ struct LinearFilterRun {
     ErrorVector mean{ErrorVector::Zero()};
     ErrorMatrix claimed{ErrorMatrix::Zero()};
   };
-  std::vector<FixGains<1>> gains{};  ///< of arriving_fixes()
+  std::vector<FixGains<1>> gains{};  ///< of arriving_fixes(), on all rows at once
   std::vector<Epoch> epochs{};       ///< at the arrival of those that are scored
   bool is_positive{true};            ///< P, after every fix
 };

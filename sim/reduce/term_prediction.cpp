@@ -30,6 +30,18 @@ ProcessNoise noise_of(const FilterModel& model) {
   return process_noise(model.config.imu, model.config.biases);
 }
 
+/// Gains on the rows of a fix one after the other that do what these do on all at once.
+FixGains<1> row_by_row(const FixRows& fix, FixGains<1> gains) {
+  // All at once, row i has the gain (I - K_5 h_5) .. (I - K_(i+1) h_(i+1)) K_i.
+  for (int i = 4; i >= 0; --i) {
+    for (int j = 5; j > i; --j) {
+      const auto h = fix.H.row(j);
+      gains.col(i) += gains.col(j) * (h.dot(gains.col(i)) / (1.0 - h.dot(gains.col(j))));
+    }
+  }
+  return gains;
+}
+
 ErrorMatrix block(const ErrorMoment<2>& Z, int row, int column) {
   return Z.block<kErrorStates, kErrorStates>(row * kErrorStates, column * kErrorStates);
 }
@@ -113,9 +125,10 @@ struct TermPrediction::Track {
         show(without_fix, *epoch++, path.at_end_of(fix.arrives).r_e_m);
       }
       const Time t = path.states[now].time;
+      const FixRows rows = path.fix_rows(fix.at, scene.gnss.errors.lever_arm_b_m, weight.of(t));
       FixGains<2> gains;
-      gains << *full_gain++, *gain++;
-      pair.update(path.fix_rows(fix.at, scene.gnss.errors.lever_arm_b_m, weight.of(t)), gains);
+      gains << row_by_row(rows, *full_gain++), row_by_row(rows, *gain++);
+      pair.update(rows, gains);
       weight.fused(t);
     }
   }
