@@ -65,7 +65,7 @@ UpdateOutcome BasicEkf<Kernel, Error>::judge(const Measurement& m) {
 template <CovarianceKernel Kernel, class Error>
 void BasicEkf<Kernel, Error>::fuse(const Measurement& m, int position_rows, double position_weight,
                                    Held held) {
-  const WhiteMeasurement white = whitened(m, position_rows, position_weight);
+  const WhiteMeasurement white = whitened(m, position_rows, position_weight, vehicle_.has_value());
   if constexpr (SettableKernel<Kernel>) {
     if (vehicle_ || held != Held::kNothing) {
       Belief present = belief();
