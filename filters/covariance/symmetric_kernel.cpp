@@ -91,7 +91,7 @@ void SymmetricKernel<Scalar>::propagate(const ErrorDynamics& step, const Process
 
 template <class Scalar>
 void SymmetricKernel<Scalar>::turn_attitude(const Eigen::Matrix3d& J) {
-  const Eigen::Matrix<Scalar, 3, 3> T = J.cast<Scalar>();
+  const Eigen::Matrix<Scalar, 3, 3>& T = J.cast<Scalar>();
   Eigen::Matrix<Scalar, 3, kPaddedStates> rows = T * P_.template middleRows<3>(kPsi);
   const Eigen::Matrix<Scalar, 3, 3> block = rows.template middleCols<3>(kPsi) * T.transpose();
   rows.template middleCols<3>(kPsi) = block.template selfadjointView<Eigen::Lower>();
