@@ -37,9 +37,9 @@ struct ToAnother {
 struct ToNan {
   template <class T>
   bool operator()(T& value) const {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    if constexpr (std::is_same_v<T, double>) return value = kNan, true;
-    if constexpr (requires { value.setConstant(kNan); }) return value.setConstant(kNan), true;
+    constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+    if constexpr (std::is_same_v<T, double>) return value = kNoNumber, true;
+    if constexpr (requires { value.setConstant(kNoNumber); }) return value.setConstant(kNoNumber), true;
     return false;
   }
 };

@@ -19,7 +19,7 @@ using test::random_estimate;
 using test::random_vector;
 
 /// An estimate, the vehicle's parameters as estimated, and a measured rate.
-struct Setup {
+struct VehicleSetup {
   Estimate estimate{};
   VehicleVector vehicle{};
   Eigen::Vector3d omega_b_radps{};
@@ -27,9 +27,9 @@ struct Setup {
 
 /// Mount angles to 0.07 rad, every second one 0, axles to 3 m off, scales to 10 %, rates to
 /// 3 rad/s.
-Setup random_setup(std::uint64_t seed) {
+VehicleSetup random_vehicle_setup(std::uint64_t seed) {
   sim::Random random(seed, 3);
-  Setup s{random_estimate(seed)};
+  VehicleSetup s{random_estimate(seed)};
   for (double& v : s.vehicle) v = 2.0 * random.uniform() - 1.0;
   const double mount_rad = seed % 2 == 0 ? 0.0 : 0.05;
   s.vehicle.array() *= (VehicleVector() << mount_rad, mount_rad, 3.0, 0.1, 50.0).finished().array();
@@ -38,8 +38,8 @@ Setup random_setup(std::uint64_t seed) {
 }
 
 /// The truth that is x and y away from what is estimated.
-Setup truth_of(const Setup& s, const ErrorVector& x, const VehicleVector& y) {
-  Setup truth = s;
+VehicleSetup truth_of(const VehicleSetup& s, const ErrorVector& x, const VehicleVector& y) {
+  VehicleSetup truth = s;
   inject(truth.estimate, x);
   truth.vehicle += y;
   return truth;
@@ -63,8 +63,9 @@ auto vehicle_jacobian(const F& f, const VehicleVector& steps) {
 /// The rows are filled up to three.
 struct Model {
   std::string name;
-  std::function<Eigen::Vector3d(const Setup& truth, const Setup& estimated)> innovation;
-  std::function<Measurement(const Setup&)> linearized;
+  std::function<Eigen::Vector3d(const VehicleSetup& truth, const VehicleSetup& estimated)>
+      innovation;
+  std::function<Measurement(const VehicleSetup&)> linearized;
 };
 
 Eigen::Vector3d filled(const Measurement& m) {
@@ -74,58 +75,62 @@ Eigen::Vector3d filled(const Measurement& m) {
 }
 
 /// The constraint at the truth, which is 0 there, is the truth's own velocity elsewhere.
-Measurement constraint(const Setup& s) {
+Measurement constraint(const VehicleSetup& s) {
   return non_holonomic(s.estimate, s.vehicle, s.omega_b_radps, 0.1, 0.2);
 }
 
-double odometer_reads(const Setup& truth) {
+double odometer_reads(const VehicleSetup& truth) {
   return (1.0 + truth.vehicle(kOdometerScale)) *
          RearAxle(truth.estimate, truth.vehicle, truth.omega_b_radps).v_mps.x();
 }
 
-Measurement odometer(const Setup& s, double speed_mps) {
+Measurement odometer(const VehicleSetup& s, double speed_mps) {
   return measurement(OdometerSpeed{{}, speed_mps, 0.1}, s.estimate, s.vehicle, s.omega_b_radps);
 }
 
-Measurement barometer(const Setup& s, double height_m) {
+Measurement barometer(const VehicleSetup& s, double height_m) {
   return measurement(BarometricHeight{{}, height_m, 0.1}, s.estimate, s.vehicle, s.omega_b_radps);
 }
 
 /// A gyro with the truth's bias that turns with the Earth.
-Eigen::Vector3d gyro_reads_at_rest(const Setup& truth) {
+Eigen::Vector3d gyro_reads_at_rest(const VehicleSetup& truth) {
   return truth.estimate.bias.b_g_radps +
          truth.estimate.nav.q_eb.conjugate() * earth_rotation_e_radps();
 }
 
-double barometer_reads(const Setup& truth) {
+double barometer_reads(const VehicleSetup& truth) {
   return geodetic_from_ecef(truth.estimate.nav.r_e_m).height_m + truth.vehicle(kHeightOffset);
 }
 
 const Model kModels[] = {
     {"non-holonomic",
      // z = 0 at the truth: the estimate's velocity minus the truth's says by how much it is off.
-     [](const Setup& truth, const Setup& s) -> Eigen::Vector3d {
+     [](const VehicleSetup& truth, const VehicleSetup& s) -> Eigen::Vector3d {
        return filled(constraint(s)) - filled(constraint(truth));
      },
      constraint},
     {"odometer",
-     [](const Setup& truth, const Setup& s) { return filled(odometer(s, odometer_reads(truth))); },
-     [](const Setup& s) { return odometer(s, odometer_reads(s)); }},
+     [](const VehicleSetup& truth, const VehicleSetup& s) {
+       return filled(odometer(s, odometer_reads(truth)));
+     },
+     [](const VehicleSetup& s) { return odometer(s, odometer_reads(s)); }},
     {"zero velocity",
-     [](const Setup& truth, const Setup& s) -> Eigen::Vector3d {
+     [](const VehicleSetup& truth, const VehicleSetup& s) -> Eigen::Vector3d {
        return truth.estimate.nav.v_e_mps + filled(zero_velocity(s.estimate, 0.1));
      },
-     [](const Setup& s) { return zero_velocity(s.estimate, 0.1); }},
+     [](const VehicleSetup& s) { return zero_velocity(s.estimate, 0.1); }},
     {"zero angular rate",
-     [](const Setup& truth, const Setup& s) {
+     [](const VehicleSetup& truth, const VehicleSetup& s) {
        return filled(zero_angular_rate(s.estimate, gyro_reads_at_rest(truth), 0.1));
      },
-     [](const Setup& s) { return zero_angular_rate(s.estimate, gyro_reads_at_rest(s), 0.1); }},
+     [](const VehicleSetup& s) {
+       return zero_angular_rate(s.estimate, gyro_reads_at_rest(s), 0.1);
+     }},
     {"barometer",
-     [](const Setup& truth, const Setup& s) {
+     [](const VehicleSetup& truth, const VehicleSetup& s) {
        return filled(barometer(s, barometer_reads(truth)));
      },
-     [](const Setup& s) { return barometer(s, barometer_reads(s)); }},
+     [](const VehicleSetup& s) { return barometer(s, barometer_reads(s)); }},
 };
 
 }  // namespace
@@ -134,7 +139,7 @@ TEST_CASE("H of every vehicle measurement is the derivative of its innovation") 
   const ErrorVector steps = test::jacobian_steps(0.01, 10.0, 1000.0, 1.0, 0.1);
   const VehicleVector vehicle_steps = (VehicleVector() << 0.01, 0.01, 1.0, 0.1, 10.0).finished();
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    const Setup s = random_setup(seed);
+    const VehicleSetup s = random_vehicle_setup(seed);
     for (const Model& model : kModels) {
       CAPTURE(seed);
       CAPTURE(model.name);

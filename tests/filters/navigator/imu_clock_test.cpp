@@ -9,7 +9,7 @@
 namespace leeway {
 namespace {
 
-constexpr double kWeekS = 604800.0;
+constexpr double kGpsWeekS = 604800.0;
 constexpr double kMaxJumpS = 60.0;
 constexpr double kMaxGapS = 0.5;
 
@@ -95,30 +95,30 @@ TEST_CASE("wild times that do not follow each other never add up to a jump") {
 
 TEST_CASE("seconds of week that begin anew are counted on, again and again") {
   ImuClock clock(kMaxJumpS, kMaxGapS);
-  double expected_s = kWeekS - 0.05;
+  double expected_s = kGpsWeekS - 0.05;
   CHECK(judge(clock, expected_s) == Verdict::kAccepted);
   for (int week = 1; week <= 3; ++week) {
     CAPTURE(week);
     for (int k = -4; k <= 100; ++k) {
-      const double time_of_week_s = k < 0 ? kWeekS + 0.01 * k : 0.01 * k;
+      const double time_of_week_s = k < 0 ? kGpsWeekS + 0.01 * k : 0.01 * k;
       CHECK(judge(clock, time_of_week_s) == Verdict::kAccepted);
-      CHECK(clock.newest() == time_from_seconds(week * kWeekS + 0.01 * k));
+      CHECK(clock.newest() == time_from_seconds(week * kGpsWeekS + 0.01 * k));
     }
     // What another sensor stamps before and after the end of the week is put where it belongs.
-    CHECK(clock.counted_on(time_from_seconds(0.5)) == time_from_seconds(week * kWeekS + 0.5));
-    CHECK(clock.counted_on(time_from_seconds(kWeekS - 0.5)) ==
-          time_from_seconds(week * kWeekS - 0.5));
-    clock.set(time_from_seconds((week + 1) * kWeekS - 0.05));
+    CHECK(clock.counted_on(time_from_seconds(0.5)) == time_from_seconds(week * kGpsWeekS + 0.5));
+    CHECK(clock.counted_on(time_from_seconds(kGpsWeekS - 0.5)) ==
+          time_from_seconds(week * kGpsWeekS - 0.5));
+    clock.set(time_from_seconds((week + 1) * kGpsWeekS - 0.05));
   }
 }
 
 TEST_CASE("a hole over the end of a week, and one record of it back") {
-  ImuClock clock = clock_at(kWeekS - 10.0);
+  ImuClock clock = clock_at(kGpsWeekS - 10.0);
   CHECK(judge(clock, 20.0) == Verdict::kFuture);
-  CHECK(judge(clock, kWeekS - 9.99) == Verdict::kAccepted);
+  CHECK(judge(clock, kGpsWeekS - 9.99) == Verdict::kAccepted);
   CHECK(judge(clock, 20.0) == Verdict::kFuture);
   CHECK(judge(clock, 20.01) == Verdict::kAccepted);
-  CHECK(newest_s(clock) == kWeekS + 20.01);
+  CHECK(newest_s(clock) == kGpsWeekS + 20.01);
 }
 
 TEST_CASE("at the ends of possible time, 127 years from zero, nothing overflows") {

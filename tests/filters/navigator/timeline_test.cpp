@@ -21,7 +21,7 @@ namespace {
 using test::near;
 using test::same_bits;
 
-constexpr double kRateHz = 100.0;
+constexpr double kTimelineRateHz = 100.0;
 
 /// A message and the time at which it arrives.
 struct Arrival {
@@ -69,7 +69,7 @@ const sim::Trajectory& fast_circle() {
 /// 100 Hz, fixes between samples, at up to 4 Hz.
 const test::Recording& recording() {
   static const test::Recording log =
-      test::record(fast_circle(), sim::true_increments(fast_circle(), kRateHz, 200.0),
+      test::record(fast_circle(), sim::true_increments(fast_circle(), kTimelineRateHz, 200.0),
                    automotive_mems_model(), {}, 0.25, 0.4937, 1);
   return log;
 }
@@ -81,8 +81,9 @@ std::vector<GnssFix> fixes_until(double end_s) {
 }
 
 std::vector<ImuIncrement> imu_until(double end_s) {
-  return {recording().imu.begin(),
-          recording().imu.begin() + static_cast<std::ptrdiff_t>(std::lround(end_s * kRateHz))};
+  return {
+      recording().imu.begin(),
+      recording().imu.begin() + static_cast<std::ptrdiff_t>(std::lround(end_s * kTimelineRateHz))};
 }
 
 }  // namespace
@@ -136,7 +137,7 @@ TEST_CASE("what comes at a steady pace, and steadily late, leads to the same bit
     for (const double velocity_lag_s : {0.0, 0.1}) {  // cuts every fix in two
       std::vector<Arrival> in_order;
       for (GnssFix fix : fixes_until(18.0)) {
-        const double t_s = std::round(to_seconds(fix.time) * kRateHz) / kRateHz;
+        const double t_s = std::round(to_seconds(fix.time) * kTimelineRateHz) / kTimelineRateHz;
         if (on_samples) fix.time = time_from_seconds(t_s);
         const Time between = fix.time + std::chrono::milliseconds{100};
         in_order.push_back({to_seconds(fix.time), fix});
@@ -236,7 +237,7 @@ TEST_CASE("half a second of latency at 30 m/s in a circle costs less than 1 %" *
     run(navigator, log.imu, arrivals, [&](const Navigator& n) {
       const NavState& nav = n.filter().estimate().nav;
       const double t_s = to_seconds(nav.time);
-      if (t_s < 30.0 || std::lround(t_s * kRateHz) % 10 != 0) return;
+      if (t_s < 30.0 || std::lround(t_s * kTimelineRateHz) % 10 != 0) return;
       sum_m2 += (nav.r_e_m - sim::truth_at(fast_circle(), t_s).nav.r_e_m).squaredNorm();
       ++count;
     });
@@ -275,7 +276,7 @@ TEST_CASE("velocity_lag_s: a receiver that reports the mean of its epoch") {
     run(navigator, log.imu, on_time(log.fixes), [&](const Navigator& n) {
       const NavState& nav = n.filter().estimate().nav;
       const double t_s = to_seconds(nav.time);
-      if (t_s < 30.0 || std::lround(t_s * kRateHz) % 10 != 0) return;
+      if (t_s < 30.0 || std::lround(t_s * kTimelineRateHz) % 10 != 0) return;
       sum += (nav.v_e_mps - sim::truth_at(fast_circle(), t_s).nav.v_e_mps).squaredNorm();
       ++count;
     });
