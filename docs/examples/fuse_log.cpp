@@ -32,7 +32,7 @@ void fuse(const char* imu_path, const char* gnss_path, const char* solution_path
     std::printf("%s: %llu fixes\n", leeway::name(verdict).data(),
                 static_cast<unsigned long long>(navigator.count(verdict)));
   }
-  for (const auto* report : {&imu.report(), &gnss.report()}) {
+  for (const auto* report : {&imu.summary(), &gnss.summary()}) {
     for (const auto& message : report->messages) std::fprintf(stderr, "%s\n", message.c_str());
   }
 }

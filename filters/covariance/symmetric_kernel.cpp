@@ -93,7 +93,7 @@ template <class Scalar>
 void SymmetricKernel<Scalar>::turn_attitude(const Eigen::Matrix3d& J) {
   ErrorMatrix P = matrix();
   transform_block(P, kPsi, J);
-  set(P);
+  set(ErrorMatrix(P.selfadjointView<Eigen::Lower>()));  // symmetric to the bit
 }
 
 template <class Scalar>

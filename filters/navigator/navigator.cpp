@@ -61,6 +61,11 @@ Verdict judge(const R& reading) {
                                                          : Verdict::kImplausible;
 }
 
+const NavigatorConfig& checked(const NavigatorConfig& config) {
+  validate(config);
+  return config;
+}
+
 }  // namespace
 
 void validate(const NavigatorConfig& config) {
@@ -75,7 +80,7 @@ void validate(const NavigatorConfig& config) {
 }
 
 Navigator::Navigator(const NavigatorConfig& config)
-    : config_(config), timeline_(config), clock_(config.max_jump_s, config.max_gap_s) {}
+    : config_(checked(config)), timeline_(config), clock_(config.max_jump_s, config.max_gap_s) {}
 
 void Navigator::start(const Estimate& estimate, const ErrorMatrix& P) {
   NavigatorState state(config_);

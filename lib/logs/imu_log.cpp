@@ -30,7 +30,7 @@ class ImuSource final : public RecordSource<ImuIncrement> {
     std::optional<ImuRow> row = rows_.next();
     const bool needs_previous = row && !(row->dt_s > 0.0);
     if (needs_previous && !previous_) {
-      --rows_.report().records;  // it only starts the clock
+      --rows_.summary().records;  // it only starts the clock
       previous_ = std::exchange(row, rows_.next());
     }
     if (!row) return std::nullopt;
@@ -43,7 +43,7 @@ class ImuSource final : public RecordSource<ImuIncrement> {
     return inc;
   }
 
-  const LogSummary& report() const override { return std::as_const(rows_).report(); }
+  const LogSummary& summary() const override { return std::as_const(rows_).summary(); }
   std::string_view layout() const override { return rows_.layout(); }
 
  private:

@@ -50,12 +50,12 @@ class LogSource final : public RecordSource<Row> {
     if (row && (!last_ || time_of(*row) - *last_ > kSuspectJump)) row = settle(std::move(*row));
     if (!row) return row;
     last_ = time_of(*row);
-    ++report_.records;
+    ++summary_.records;
     return row;
   }
 
-  LogSummary& report() { return report_; }
-  const LogSummary& report() const override { return report_; }
+  LogSummary& summary() { return summary_; }
+  const LogSummary& summary() const override { return summary_; }
   std::string_view layout() const override { return layout_; }
 
  private:
@@ -66,18 +66,18 @@ class LogSource final : public RecordSource<Row> {
     while (const auto line = lines_.next()) {
       if (is_blank_or_comment(*line)) continue;
       line_ = *line;
-      ++report_.lines;
+      ++summary_.lines;
       if (lines_.overlong()) {
         reject(LineDamage::kTooLong);
       } else if (const auto fault = parser_(line_, row)) {
-        report_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
+        summary_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
       } else if (last_ && time_of(row) <= *last_) {
         reject_order(time_of(row), *last_);
       } else {
         return row;
       }
     }
-    report_.incomplete = lines_.damage();
+    summary_.incomplete = lines_.damage();
     return std::nullopt;
   }
 
@@ -96,7 +96,7 @@ class LogSource final : public RecordSource<Row> {
         held_ = std::move(following);
         return row;
       }
-      report_.add_damage(LineDamage::kTimeJumpsAhead, std::move(message));
+      summary_.add_damage(LineDamage::kTimeJumpsAhead, std::move(message));
       row = std::move(*following);
       if (last_ && time_of(row) - *last_ <= kSuspectJump) return row;
     }
@@ -107,13 +107,13 @@ class LogSource final : public RecordSource<Row> {
   }
 
   void reject(LineDamage reason) {
-    report_.add_damage(reason, damage_message(lines_, line_, {reason, line_}));
+    summary_.add_damage(reason, damage_message(lines_, line_, {reason, line_}));
   }
 
   LineReader lines_;
   RowParser<Row> parser_;
   std::string_view layout_;
-  LogSummary report_{};
+  LogSummary summary_{};
   std::string_view line_{};    // read last
   std::optional<Row> held_{};  // read ahead to settle() the row before it
   std::optional<Time> last_{};

@@ -111,7 +111,8 @@ class Analysis {
     r.true_m = true_m;
     r.worst_s = t_s;
     r.worst = before;
-    if (config_.by_source) r.budget = pair.budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
+    if (config_.by_source)
+      r.error_budget = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
   }
 
   void enter_window(double t_s) {

@@ -12,7 +12,7 @@ namespace leeway::sim {
 
 class SceneCovariance {
  public:
-  /// At the scene's start. @param by_source  keeps the sources apart, for budget()
+  /// At the scene's start. @param by_source  keeps the sources apart, for error_budget()
   SceneCovariance(const Scene& scene, bool by_source);
 
   void propagate(const Leg& leg);
@@ -24,7 +24,7 @@ class SceneCovariance {
   ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
 
   /// @pre made by source.
-  ErrorBudget budget(const Eigen::Matrix3d& C_en) const { return truth_->budget(C_en); }
+  ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
 
  private:
   ProcessNoise noise_;

@@ -174,14 +174,14 @@ ErrorMoment<kFilters> TruthModel<kFilters>::covariance() const {
 }
 
 template <int kFilters>
-ErrorBudget TruthModel<kFilters>::budget(const Eigen::Matrix3d& C_en) const {
-  ErrorBudget budget;
+ErrorBudget TruthModel<kFilters>::error_budget(const Eigen::Matrix3d& C_en) const {
+  ErrorBudget error_budget;
   const auto add = [&](ErrorSource name, const ErrorMoment<kFilters>& P) {
-    budget.push_back({name, C_en.transpose() * P.template block<3, 3>(kDr, kDr) * C_en});
+    error_budget.push_back({name, C_en.transpose() * P.template block<3, 3>(kDr, kDr) * C_en});
   };
   for (const auto& [name, source] : sources_) add(name, source.P);
   for (const auto& [name, moment] : parameter_moments_) add(name, parameters_.covariance(moment));
-  return budget;
+  return error_budget;
 }
 
 template class TruthModel<1>;

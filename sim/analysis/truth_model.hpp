@@ -37,7 +37,7 @@ class TruthModel {
   ErrorMoment<kFilters> covariance() const;
 
   /// Of the first filter.
-  ErrorBudget budget(const Eigen::Matrix3d& C_en) const;
+  ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const;
 
  private:
   void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias);

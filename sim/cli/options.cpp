@@ -9,6 +9,7 @@
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
 #include "leeway/sim/sensors/imu_model_file.hpp"
+#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -58,6 +59,14 @@ CLI::Validator positive() {
           ""};
 }
 
+CLI::Validator not_negative() {
+  return {[](std::string& text) {
+            double value = 0.0;
+            return parse_numbers(text, &value, 1) && value >= 0.0 ? "" : text + " is below 0";
+          },
+          ""};
+}
+
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what) {
   app.add_option("--threads", threads, of_what + "0: all processors")
       ->check(CLI::Range(0, 1024))
@@ -71,7 +80,7 @@ void add_repeat_option(CLI::App& app, int& repeat) {
 }
 
 void note_spelling(const std::string& word, std::string_view name) {
-  if (word != name) fmt::print(stderr, "leeway: note: {} is now written {}\n", word, name);
+  if (word != name) note(fmt::format("{} is now written {}", word, name));
 }
 
 bool is_imu_class(const std::string& imu) { return imu == kMems || from_name<ImuClass>(imu); }

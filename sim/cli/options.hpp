@@ -29,6 +29,9 @@ CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::stri
 /// Refuses numbers that are not above zero.
 CLI::Validator positive();
 
+/// Refuses negative numbers, which CLI11 wraps around where they are to be unsigned.
+CLI::Validator not_negative();
+
 /// --threads. @param of_what  what runs on them
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what = "");
 

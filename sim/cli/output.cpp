@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <set>
 #include <system_error>
 
 #include "leeway/sim/tools/ranks.hpp"
@@ -88,7 +90,9 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
 }
 
 void note(std::string_view text) {
-  if (sim::Ranks::launched_first()) fmt::print(stderr, "leeway: note: {}\n", text);
+  static std::set<std::string, std::less<>> said;
+  if (!sim::Ranks::launched_first() || !said.emplace(text).second) return;
+  fmt::print(stderr, "leeway: note: {}\n", text);
 }
 
 Progress::Progress(std::string label)

@@ -59,7 +59,7 @@ auto writing(F&& write) {
 /// Writes a file as a whole or not at all. @throws WriteFailure
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// A line on stderr, once where several ranks run.
+/// A line on stderr, once however often it is said and however many ranks run.
 void note(std::string_view text);
 
 /// A bar on stderr, where that is a terminal, once the work has taken a second, with the time to

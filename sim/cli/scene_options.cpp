@@ -113,7 +113,7 @@ void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::
   app.add_option("--trials", choice.trials, meaning)->check(CLI::Range(1, most));
   app.add_option("--first-seed", choice.first_seed,
                  "trial k has this seed + k; in place of the scene's")
-      ->check(CLI::Range(std::numeric_limits<std::uint64_t>::max()));
+      ->check(not_negative());
 }
 
 std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {

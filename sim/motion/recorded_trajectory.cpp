@@ -77,11 +77,11 @@ Recording read(const RecordedParameters& p) {
     }
     recording.t_s.push_back(to_seconds(record->nav.time - *start));
     recording.rows.push_back(record->nav);
-    check_row(recording, *record, reader.report().lines, p.max_gap_s);
+    check_row(recording, *record, reader.summary().lines, p.max_gap_s);
   }
-  const LogSummary& report = reader.report();
-  if (!report.messages.empty()) throw Error(report.messages.front());
-  if (!report.incomplete.empty()) recording.refuse(report.incomplete);
+  const LogSummary& summary = reader.summary();
+  if (!summary.messages.empty()) throw Error(summary.messages.front());
+  if (!summary.incomplete.empty()) recording.refuse(summary.incomplete);
   if (recording.rows.size() < kFewestRows) {
     recording.refuse(fmt::format("{} rows are too few: at least {} make a trajectory",
                                  recording.rows.size(), kFewestRows));

@@ -1,6 +1,6 @@
 /// @file
 /// A filter's model carried along the true motion: its gains, what it claims, and the mean error
-/// that it makes. No noise, no trials. Part of budget.
+/// that it makes. No noise, no trials. Part of reduce.
 #pragma once
 
 #include <vector>

@@ -19,16 +19,16 @@ constexpr double kAgreesWithinLimit = 0.01;  // or of the limit
 
 void validate(const Scene& scene, const ReductionOptions& options) {
   if (options.repeat < 1 || options.repeat > 1000) {
-    throw Error("budget: repeat is " + std::to_string(options.repeat) + ", must be 1 to 1000");
+    throw Error("reduce: repeat is " + std::to_string(options.repeat) + ", must be 1 to 1000");
   }
   if (scene.gnss.latency_s >= scene.gnss.interval_s) {
-    throw Error("budget: latency_s of the fixes is " + std::to_string(scene.gnss.latency_s) +
+    throw Error("reduce: latency_s of the fixes is " + std::to_string(scene.gnss.latency_s) +
                 ", must be less than their interval_s, " + std::to_string(scene.gnss.interval_s));
   }
 }
 
-/// What the budget leaves out, and the filters' own ways, which are what it is about.
-Scene budget_scene(const Scene& scene) {
+/// What a reduction leaves out, and the filters' own ways, which are what it is about.
+Scene reduction_scene(const Scene& scene) {
   Scene plain = scene;
   plain.gnss.outlier_probability = 0.0;
   plain.imu_divider = 1;
@@ -36,11 +36,11 @@ Scene budget_scene(const Scene& scene) {
   return plain;
 }
 
-class Budgeting {
+class Reduction {
  public:
-  Budgeting(const Scene& scene, const ReductionOptions& options)
+  Reduction(const Scene& scene, const ReductionOptions& options)
       : options_(options),
-        plan_(budget_scene(scene), {}, options.threads),
+        plan_(reduction_scene(scene), {}, options.threads),
         full_(full_model(plan_.scene())),
         prediction_(plan_, full_) {
     result_.scene = plan_.scene();
@@ -177,7 +177,7 @@ bool agrees(const TermWorth& term, double limit_m) {
 
 ModelReduction reduce_model(const Scene& scene, const ReductionOptions& options) {
   validate(scene, options);
-  return Budgeting(scene, options).run();
+  return Reduction(scene, options).run();
 }
 
 }  // namespace leeway::sim

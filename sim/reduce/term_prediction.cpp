@@ -161,7 +161,7 @@ double TermPrediction::contribution_m(const std::vector<ErrorSource>& sources) c
               [&](const Pair& pair, const LinearFilterRun::Epoch&, const Eigen::Vector3d& r_e_m) {
                 ++epochs;
                 for (const auto& [source, mean_sq_n_m2] :
-                     pair.budget(ned_to_ecef(geodetic_from_ecef(r_e_m)))) {
+                     pair.error_budget(ned_to_ecef(geodetic_from_ecef(r_e_m)))) {
                   if (std::find(sources.begin(), sources.end(), source) == sources.end()) continue;
                   sum_m2 += mean_sq_n_m2.topLeftCorner<2, 2>().trace();
                 }

@@ -29,7 +29,7 @@ class Reference {
   /// Nothing outside the window.
   std::optional<TruthRecord> at(Time t);
 
-  const LogSummary& report() const { return track_.report(); }
+  const LogSummary& summary() const { return track_.summary(); }
 
  private:
   TruthTrack track_;

@@ -30,7 +30,7 @@ class Readings {
     }
   }
 
-  LogSummary report() const { return reader_ ? reader_->report() : LogSummary{}; }
+  LogSummary summary() const { return reader_ ? reader_->summary() : LogSummary{}; }
 
  private:
   const Aiding& aiding_;
@@ -179,12 +179,12 @@ class Replay {
       result_.final_roll_deg =
           ned_from_nav_state(navigator_.filter().estimate().nav).attitude.roll_rad / kRadPerDeg;
     }
-    result_.imu_report = imu_.report();
-    result_.gnss_report = gnss_.report();
+    result_.imu_summary = imu_.summary();
+    result_.gnss_summary = gnss_.summary();
     for (std::size_t a = 0; a < kAidings.size(); ++a) {
-      result_.aiding_reports[a] = aidings_[a].report();
+      result_.aiding_summaries[a] = aidings_[a].summary();
     }
-    if (reference_) result_.truth_report = reference_->report();
+    if (reference_) result_.truth_summary = reference_->summary();
     return result_;
   }
 

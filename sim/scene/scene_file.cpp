@@ -75,7 +75,7 @@ class SceneReader {
                                        .value_or(static_cast<std::int64_t>(scene_.first_seed)));
   }
 
-  /// Files of Leeway 0.1 call it [budget].
+  /// Older files call it [budget].
   void read_limit_section(TomlSection& root) {
     const auto read = [this](TomlSection& section) { scene_.limit = read_limit(section); };
     if (!root.has("budget")) {

@@ -17,7 +17,7 @@ class RecordSource {
  public:
   virtual ~RecordSource() = default;
   virtual std::optional<Record> next() = 0;
-  virtual const LogSummary& report() const = 0;
+  virtual const LogSummary& summary() const = 0;
   virtual std::string_view layout() const = 0;
 };
 
@@ -29,7 +29,7 @@ class LogReader {
   std::optional<Record> next() { return source_->next(); }
 
   /// What was met so far.
-  const LogSummary& report() const { return source_->report(); }
+  const LogSummary& summary() const { return source_->summary(); }
 
   /// The name of the layout, told from the content.
   std::string_view layout() const { return source_->layout(); }

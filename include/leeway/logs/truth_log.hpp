@@ -45,7 +45,7 @@ class TruthTrack {
   /// @throws Error when t is before the t of the call before.
   std::optional<TruthRecord> interpolate(Time t);
 
-  const LogSummary& report() const { return reader_.report(); }
+  const LogSummary& summary() const { return reader_.summary(); }
 
  private:
   TruthLogReader reader_;

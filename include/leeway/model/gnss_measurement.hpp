@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <optional>
 
 #include "leeway/earth/time.hpp"
 #include "leeway/model/error_state.hpp"
@@ -36,19 +35,23 @@ class PositionWeight {
   explicit PositionWeight(double correlation_s) : correlation_s_(correlation_s) {}
 
   double of(Time t) const {
-    return last_ ? gnss_position_weight(to_seconds(t - *last_), correlation_s_) : 1.0;
+    return has_last_ ? gnss_position_weight(to_seconds(t - last_), correlation_s_) : 1.0;
   }
-  void fused(Time t) { last_ = t; }
+  void fused(Time t) {
+    last_ = t;
+    has_last_ = true;
+  }
 
   /// The state that a snapshot keeps.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(last_);
+    archive(last_, has_last_);
   }
 
  private:
   double correlation_s_;
-  std::optional<Time> last_{};
+  Time last_{};
+  bool has_last_{false};
 };
 
 /// Linearizes the fix about the estimate: 3 rows for a position or a velocity, 6 for both, position

@@ -42,7 +42,7 @@ struct NavigatorConfig {
   /// the vehicle goes; until then, body axes are sensor axes.
   std::optional<Eigen::Matrix3d> C_bs{Eigen::Matrix3d::Identity()};
   RateMeaning rate_meaning{RateMeaning::kPoint};  ///< of an ImuSample
-  double max_gap_s{0.5};  ///< longer holes in the IMU data are coasted through
+  double max_gap_s{0.5};                          ///< longer holes in the IMU data are bridged
   /// A longer step of the IMU's time is a jump of its clock, a longer increment implausible.
   double max_jump_s{60.0};
   double max_rate_radps{100.0};  ///< beyond this an IMU reading is implausible

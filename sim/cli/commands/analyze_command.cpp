@@ -70,7 +70,7 @@ double horizontal_m2(const Eigen::Matrix3d& mean_sq_n_m2) {
 /// Of all sources.
 Eigen::Matrix3d total(const sim::ErrorBudget& error_budget) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const sim::BudgetLine& line : error_budget) sum += line.mean_sq_n_m2;
+  for (const sim::ErrorBudgetLine& line : error_budget) sum += line.mean_sq_n_m2;
   return sum;
 }
 
@@ -83,7 +83,7 @@ std::string error_budget_csv(const sim::ErrorBudget& error_budget) {
     csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
                        horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
   };
-  for (const sim::BudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
+  for (const sim::ErrorBudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   return csv;
 }
@@ -123,7 +123,7 @@ void print_sources(sim::ErrorBudget error_budget) {
     cells.push_back(number(100.0 * m2 / horizontal_m2(sum), 2));
     table.add(std::move(cells));
   };
-  for (const sim::BudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
+  for (const sim::ErrorBudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
   add("total", sum);
   table.print();
 }
@@ -141,13 +141,13 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   }
   print_sigmas(r.worst);
   fmt::print("\nWhere the true error comes from\n");
-  print_sources(r.budget);
+  print_sources(r.error_budget);
 }
 
 Json results_json(const sim::CovarianceAnalysis& r) {
   Json error_budget = Json::array();
-  const double sum_m2 = horizontal_m2(total(r.budget));
-  for (const sim::BudgetLine& line : r.budget) {
+  const double sum_m2 = horizontal_m2(total(r.error_budget));
+  for (const sim::ErrorBudgetLine& line : r.error_budget) {
     error_budget.push_back({{"source", name(line.source)},
                             {"north_m2", line.mean_sq_n_m2(0, 0)},
                             {"east_m2", line.mean_sq_n_m2(1, 1)},
@@ -195,7 +195,7 @@ int run(const AnalyzeChoice& options) {
   const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
   if (moments) writing([&] { moments->close(); });
   if (!options.error_budget.empty()) {
-    write_file(options.error_budget, error_budget_csv(result.budget));
+    write_file(options.error_budget, error_budget_csv(result.error_budget));
   }
   show(
       options.output, answer_json("analyze", scene_json(scene), results_json(result)),

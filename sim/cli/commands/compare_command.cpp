@@ -162,9 +162,12 @@ void add_options(CLI::App& app, CompareChoice& options) {
   add_threads_option(app, options.compare.threads, "of the runs that are not timed; ");
   add_output_options(app, options.output);
   // Scripts may still have it.
-  app.add_option("--csv")->group("")->check([](const std::string&) {
-    return "gone: use --json, whose results[] has these rows, and nees_band";
-  });
+  app.add_option_function<std::string>(
+         "--csv",
+         [](const std::string&) {
+           throw CLI::ValidationError("--csv", "gone: use --json, whose results[] has these rows");
+         })
+      ->group("");
 }
 
 const Command kCompare{

@@ -9,33 +9,34 @@ Json path_json(const std::filesystem::path& path) {
   return path.empty() ? Json() : Json(path.string());
 }
 
-Json report_json(const std::filesystem::path& path, const std::string& format,
-                 const LogSummary& report) {
+Json summary_json(const std::filesystem::path& path, const std::string& format,
+                  const LogSummary& summary) {
   Json damaged = Json::object();
   for (std::size_t d = 0; d < kLineDamageCount; ++d) {
-    if (report.damaged[d] > 0) {
-      damaged[std::string(name(static_cast<LineDamage>(d)))] = report.damaged[d];
+    if (summary.damaged[d] > 0) {
+      damaged[std::string(name(static_cast<LineDamage>(d)))] = summary.damaged[d];
     }
   }
   return {{"path", path.string()},
           {"format", format},
-          {"lines", report.lines},
-          {"records", report.records},
-          {"damaged_lines", report.damaged_lines()},
+          {"lines", summary.lines},
+          {"records", summary.records},
+          {"damaged_lines", summary.damaged_lines()},
           {"damaged", damaged},
-          {"messages", report.messages},
-          {"incomplete", report.incomplete.empty() ? Json() : Json(report.incomplete)}};
+          {"messages", summary.messages},
+          {"incomplete", summary.incomplete.empty() ? Json() : Json(summary.incomplete)}};
 }
 
 Json logs_json(const FuseJob& job) {
-  Json logs{{"imu", report_json(job.input.imu, job.imu_format, job.result.imu_report)},
-            {"gnss", report_json(job.input.gnss, job.gnss_format, job.result.gnss_report)}};
+  Json logs{{"imu", summary_json(job.input.imu, job.imu_format, job.result.imu_summary)},
+            {"gnss", summary_json(job.input.gnss, job.gnss_format, job.result.gnss_summary)}};
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
     if (job.input.aidings[a].empty()) continue;
-    logs[kAidings[a].name] = report_json(job.input.aidings[a], "CSV", job.result.aiding_reports[a]);
+    logs[kAidings[a].name] =
+        summary_json(job.input.aidings[a], "CSV", job.result.aiding_summaries[a]);
   }
   if (!job.input.truth.empty()) {
-    logs["truth"] = report_json(job.input.truth, "CSV", job.result.truth_report);
+    logs["truth"] = summary_json(job.input.truth, "CSV", job.result.truth_summary);
   }
   return logs;
 }

@@ -63,18 +63,18 @@ const char* against_text(sim::Against against) {
 
 void print_inputs(const FuseJob& job) {
   Table table({"<log", "<format", "lines", "damaged", "<file"});
-  const auto add = [&table](const char* log, const std::string& format, const LogSummary& report,
+  const auto add = [&table](const char* log, const std::string& format, const LogSummary& summary,
                             const std::filesystem::path& path) {
-    table.add({log, format, std::to_string(report.lines), std::to_string(report.damaged_lines()),
+    table.add({log, format, std::to_string(summary.lines), std::to_string(summary.damaged_lines()),
                path.string()});
   };
-  add("IMU", job.imu_format, job.result.imu_report, job.input.imu);
-  add("GNSS", job.gnss_format, job.result.gnss_report, job.input.gnss);
+  add("IMU", job.imu_format, job.result.imu_summary, job.input.imu);
+  add("GNSS", job.gnss_format, job.result.gnss_summary, job.input.gnss);
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
     if (job.input.aidings[a].empty()) continue;
-    add(kAidings[a].name, "CSV", job.result.aiding_reports[a], job.input.aidings[a]);
+    add(kAidings[a].name, "CSV", job.result.aiding_summaries[a], job.input.aidings[a]);
   }
-  if (!job.input.truth.empty()) add("truth", "CSV", job.result.truth_report, job.input.truth);
+  if (!job.input.truth.empty()) add("truth", "CSV", job.result.truth_summary, job.input.truth);
   fmt::print("Input\n");
   table.print();
 }
@@ -176,14 +176,14 @@ void print_outages(const std::vector<FuseJob>& jobs) {
   table.print();
 }
 
-void warn_of_log(const char* log, const std::filesystem::path& path, const LogSummary& report) {
-  if (report.damaged_lines() > 0) {
+void warn_of_log(const char* log, const std::filesystem::path& path, const LogSummary& summary) {
+  if (summary.damaged_lines() > 0) {
     spdlog::warn("{} log {}: {} of {} lines are damaged and not used", log, path.string(),
-                 report.damaged_lines(), report.lines);
-    for (const std::string& message : report.messages) spdlog::warn("  {}", message);
+                 summary.damaged_lines(), summary.lines);
+    for (const std::string& message : summary.messages) spdlog::warn("  {}", message);
   }
-  if (!report.incomplete.empty()) {
-    spdlog::warn("{} log {} ends early: {}", log, path.string(), report.incomplete);
+  if (!summary.incomplete.empty()) {
+    spdlog::warn("{} log {} ends early: {}", log, path.string(), summary.incomplete);
   }
 }
 
@@ -230,12 +230,12 @@ void print_tables(const FuseOptions& options, const std::string& imu_name,
 void warn(const FuseJob& job) {
   const sim::ReplayResult& r = job.result;
   const std::string where = job.drive.empty() ? "" : job.drive + ": ";
-  warn_of_log("IMU", job.input.imu, r.imu_report);
-  warn_of_log("GNSS", job.input.gnss, r.gnss_report);
+  warn_of_log("IMU", job.input.imu, r.imu_summary);
+  warn_of_log("GNSS", job.input.gnss, r.gnss_summary);
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
-    warn_of_log(kAidings[a].name, job.input.aidings[a], r.aiding_reports[a]);
+    warn_of_log(kAidings[a].name, job.input.aidings[a], r.aiding_summaries[a]);
   }
-  if (!job.input.truth.empty()) warn_of_log("truth", job.input.truth, r.truth_report);
+  if (!job.input.truth.empty()) warn_of_log("truth", job.input.truth, r.truth_summary);
   if (const auto n = count(r, Verdict::kGap); n > 0) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);
   }

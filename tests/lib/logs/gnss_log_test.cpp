@@ -91,7 +91,7 @@ TEST_CASE("velocity is optional, as columns and in a row") {
   std::vector<bool> has_velocity;
   for (const GnssFix& row : all(rows)) has_velocity.push_back(row.velocity.has_value());
   CHECK(has_velocity == std::vector<bool>{true, false, false, false, false, true});
-  CHECK(rows.report().clean());
+  CHECK(rows.summary().clean());
 
   const auto half = dir.file("c.csv", kPositionHeader + ",vn_mps,ve_mps,vd_mps\n");
   CHECK(contains(test::message_of<Error>([&] { GnssLogReader reader(half); }),
@@ -140,14 +140,14 @@ TEST_CASE("each kind of damaged row costs that row and is counted with its place
     CAPTURE(c.row);
     GnssLogReader reader(dir.file("gnss.csv", kHeader + "1" + good + c.row + "\n3" + good));
     CHECK(all(reader).size() == 2);
-    const LogSummary& report = reader.report();
-    CHECK(report.lines == 3);
-    CHECK(report.records == 2);
-    CHECK(report.damaged_lines() == 1);
-    CHECK(report.count(c.reason) == 1);
-    REQUIRE(report.messages.size() == 1);
-    CAPTURE(report.messages[0]);
-    CHECK(contains(report.messages[0], c.message));
+    const LogSummary& summary = reader.summary();
+    CHECK(summary.lines == 3);
+    CHECK(summary.records == 2);
+    CHECK(summary.damaged_lines() == 1);
+    CHECK(summary.count(c.reason) == 1);
+    REQUIRE(summary.messages.size() == 1);
+    CAPTURE(summary.messages[0]);
+    CHECK(contains(summary.messages[0], c.message));
   }
 }
 
@@ -179,11 +179,11 @@ TEST_CASE("a header alone is a log without records") {
   const TempDir dir;
   GnssLogReader csv(dir.file("gnss.csv", kHeader));
   CHECK(!csv.next());
-  CHECK(csv.report().clean());
+  CHECK(csv.summary().clean());
   GnssLogReader pos(dir.file(
       "gnss.pos", "%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)\n"));
   CHECK(!pos.next());
-  CHECK(pos.report().lines == 0);
+  CHECK(pos.summary().lines == 0);
 }
 
 TEST_CASE("KF-GINS text has 7 or 13 numbers and continues over the end of the week") {
@@ -230,7 +230,7 @@ TEST_CASE("RTKLIB in degrees, with signed-root covariances and velocity") {
       "0.00000  0.00000  0.00000  0.00000  0.00000\r\n"));
   const auto fixes = all(reader);
   CHECK(reader.layout() == "RTKLIB .pos");
-  CHECK(reader.report().clean());
+  CHECK(reader.summary().clean());
   REQUIRE(fixes.size() == 2);
   // 2025-08-28 is the Thursday of GPS week 2381.
   CHECK(fixes[0].time == time_from_gps(2381, 4 * 86400 + 17 * 3600 + 30 * 60 + 40.25));
@@ -262,7 +262,7 @@ TEST_CASE("RTKLIB in degrees, minutes, seconds, with commas, week and UTC") {
       "-1, 0.00, 12.3\n"));
   const auto fixes = all(dms);
   REQUIRE(fixes.size() == 1);
-  CHECK(dms.report().count(LineDamage::kOutOfRange) == 1);  // 60.5 minutes
+  CHECK(dms.summary().count(LineDamage::kOutOfRange) == 1);  // 60.5 minutes
   CHECK(fixes[0].time == time_from_gps(2381, 408640.25));
   const Geodetic at = place(-0.51, -80.25, 120);
   CHECK(near(fixes[0].position->r_e_m, ecef_from_geodetic(at), kPositionTolerance));
@@ -277,7 +277,7 @@ TEST_CASE("RTKLIB in degrees, minutes, seconds, with commas, week and UTC") {
                               "sde(m) sdu(m)\n" +
                               epoch + " 45 -80 120 1 14 2 3 4\n"));
     const auto read = all(reader);
-    CHECK(read.size() + static_cast<std::size_t>(reader.report().damaged_lines()) == 1);
+    CHECK(read.size() + static_cast<std::size_t>(reader.summary().damaged_lines()) == 1);
     return read.empty() ? std::optional<Time>{} : read[0].time;
   };
   const Time gpst = time_from_gps(2381, 4 * 86400 + 12 * 3600);
@@ -311,7 +311,7 @@ TEST_CASE("RTKLIB in ECEF") {
   CHECK(fixes[0].position->R_e_m2 == R_e);
   CHECK(fixes[0].velocity->v_e_mps == Eigen::Vector3d(1, 2, 3));
   CHECK(fixes[1].position->R_e_m2 == Eigen::Matrix3d::Identity());  // rounded past definite
-  CHECK(reader.report().count(LineDamage::kOutOfRange) == 1);       // 1500 km below the ground
+  CHECK(reader.summary().count(LineDamage::kOutOfRange) == 1);      // 1500 km below the ground
 }
 
 TEST_CASE("a written fix reads back, without its correlations") {
@@ -356,8 +356,8 @@ TEST_CASE("every recorded drive and the walk read whole and clean") {
     }
     GnssLogReader reader(entry.path());
     const auto fixes = all(reader);
-    CHECK(reader.report().clean());
-    CHECK(reader.report().records == lines.line_number() - 1);  // without the header
+    CHECK(reader.summary().clean());
+    CHECK(reader.summary().records == lines.line_number() - 1);  // without the header
     for (const GnssFix& fix : fixes) REQUIRE(fix.velocity);
     ++count;
   }

@@ -37,8 +37,8 @@ LogSummary report_around(const std::string& lines) {
   const auto increments = all(reader);
   REQUIRE(!increments.empty());
   CHECK(increments.back().time == time_from_seconds(8.0));
-  CHECK(reader.report().records == static_cast<std::int64_t>(increments.size()));
-  return reader.report();
+  CHECK(reader.summary().records == static_cast<std::int64_t>(increments.size()));
+  return reader.summary();
 }
 
 TEST_CASE("rates become increments over the time from the line before") {
@@ -49,7 +49,7 @@ TEST_CASE("rates become increments over the time from the line before") {
     const auto increments = all(reader);
     REQUIRE(increments.size() == 1);  // the first line only starts the clock
     CHECK(reader.layout() == "CSV, rates");
-    CHECK(reader.report().lines == 2);
+    CHECK(reader.summary().lines == 2);
     CHECK(increments[0].time == time_from_seconds(0.75));
     CHECK(increments[0].dt_s == 0.25);
     return increments[0];
@@ -78,8 +78,8 @@ TEST_CASE("columns are found by name, in any order, among others") {
   CHECK(increments[0].dtheta_b_rad == Eigen::Vector3d(2, 4, 6));
   CHECK(increments[0].dv_b_mps == Eigen::Vector3d(8, 10, 12));
   CHECK(increments[1].dv_b_mps == Eigen::Vector3d(4, 5, 6));
-  CHECK(reader.report().lines == 3);
-  CHECK(reader.report().clean());
+  CHECK(reader.summary().lines == 3);
+  CHECK(reader.summary().clean());
 }
 
 TEST_CASE("values repeated under new times are passed on") {
@@ -87,7 +87,7 @@ TEST_CASE("values repeated under new times are passed on") {
   ImuLogReader reader(
       dir.file("imu.csv", kRatesHeader + "0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n2,1,2,3,4,5,6\n"));
   CHECK(all(reader).size() == 2);
-  CHECK(reader.report().clean());
+  CHECK(reader.summary().clean());
 }
 
 TEST_CASE("each kind of damaged line costs that line and is counted with its place") {
@@ -122,23 +122,23 @@ TEST_CASE("each kind of damaged line costs that line and is counted with its pla
   };
   for (const Case& c : cases) {
     CAPTURE(c.line.substr(0, 40));
-    const LogSummary report = report_around(c.line);
-    CHECK(report.lines == 4);
-    CHECK(report.records == 2);
-    CHECK(report.damaged_lines() == 1);
-    CHECK(report.count(c.reason) == 1);
-    REQUIRE(report.messages.size() == 1);
-    CAPTURE(report.messages[0].substr(0, 200));
-    CHECK(report.messages[0].ends_with("imu.csv" + c.message));
+    const LogSummary summary = report_around(c.line);
+    CHECK(summary.lines == 4);
+    CHECK(summary.records == 2);
+    CHECK(summary.damaged_lines() == 1);
+    CHECK(summary.count(c.reason) == 1);
+    REQUIRE(summary.messages.size() == 1);
+    CAPTURE(summary.messages[0].substr(0, 200));
+    CHECK(summary.messages[0].ends_with("imu.csv" + c.message));
   }
 }
 
 TEST_CASE("the first ten damaged lines are quoted, all are counted") {
   std::string lines = "bad";
   for (int i = 1; i < 25; ++i) lines += "\nbad";
-  const LogSummary report = report_around(lines);
-  CHECK(report.count(LineDamage::kNotANumber) == 25);
-  CHECK(report.messages.size() == 10);
+  const LogSummary summary = report_around(lines);
+  CHECK(summary.count(LineDamage::kNotANumber) == 25);
+  CHECK(summary.messages.size() == 10);
 }
 
 TEST_CASE("a gap is no damage, and a wrong time ahead does not cost the lines after it") {
@@ -149,7 +149,7 @@ TEST_CASE("a gap is no damage, and a wrong time ahead does not cost the lines af
   const auto increments = all(gap);
   REQUIRE(increments.size() == 3);
   CHECK(near(increments[1].dt_s, 499.0, 1e-12));  // its true length, for the consumer to judge
-  CHECK(gap.report().clean());
+  CHECK(gap.summary().clean());
 
   ImuLogReader ahead(dir.file("ahead.csv", kRatesHeader + "9000" + values + "1" + values + "2" +
                                                values + "7000" + values + "7000" + values + "3" +
@@ -158,9 +158,9 @@ TEST_CASE("a gap is no damage, and a wrong time ahead does not cost the lines af
   REQUIRE(times.size() == 3);
   CHECK(times[0].time == time_from_seconds(2.0));
   CHECK(times[2].time == time_from_seconds(4.0));
-  CHECK(ahead.report().count(LineDamage::kTimeJumpsAhead) == 2);
-  CHECK(ahead.report().count(LineDamage::kDuplicateTime) == 1);
-  CHECK(ahead.report().damaged_lines() == 3);
+  CHECK(ahead.summary().count(LineDamage::kTimeJumpsAhead) == 2);
+  CHECK(ahead.summary().count(LineDamage::kDuplicateTime) == 1);
+  CHECK(ahead.summary().damaged_lines() == 3);
 }
 
 TEST_CASE("files without usable content are refused with what was expected") {
@@ -188,8 +188,8 @@ TEST_CASE("a header alone is a log without records") {
   ImuLogReader reader(dir.file("imu.csv", kRatesHeader));
   CHECK(!reader.next());
   CHECK(!reader.next());
-  CHECK(reader.report().lines == 0);
-  CHECK(reader.report().clean());
+  CHECK(reader.summary().lines == 0);
+  CHECK(reader.summary().clean());
 }
 
 TEST_CASE("a cut gzip log delivers what it has and is reported incomplete") {
@@ -204,9 +204,9 @@ TEST_CASE("a cut gzip log delivers what it has and is reported incomplete") {
   REQUIRE(!increments.empty());
   CHECK(increments.size() < 4999);
   CHECK(increments.back().dv_b_mps.z() == to_seconds(increments.back().time));
-  CHECK(reader.report().damaged_lines() == 0);
-  CHECK(contains(reader.report().incomplete, "gzip stream ends early"));
-  CHECK(!reader.report().clean());
+  CHECK(reader.summary().damaged_lines() == 0);
+  CHECK(contains(reader.summary().incomplete, "gzip stream ends early"));
+  CHECK(!reader.summary().clean());
 }
 
 TEST_CASE("increments of KF-GINS continue over the end of the week") {
@@ -226,7 +226,7 @@ TEST_CASE("increments of KF-GINS continue over the end of the week") {
   CHECK(increments[1].dtheta_b_rad == Eigen::Vector3d(4e-5, -5e-5, 6e-5));
   CHECK(increments[1].dv_b_mps == Eigen::Vector3d(0.04, 0.05, -0.06));
   CHECK(increments[3].time == time_from_gps(1, 0.010));
-  CHECK(reader.report().count(LineDamage::kTimeGoesBack) == 1);
+  CHECK(reader.summary().count(LineDamage::kTimeGoesBack) == 1);
 }
 
 TEST_CASE("the mount is applied on entry and must be a rotation") {
@@ -266,7 +266,7 @@ TEST_CASE("written increments read back bit for bit, plain and gzip") {
     ImuLogReader reader(dir / name);
     const auto read = all(reader);
     CHECK(reader.layout() == "CSV, increments");
-    CHECK(reader.report().clean());
+    CHECK(reader.summary().clean());
     REQUIRE(read.size() == written.size());
     for (std::size_t i = 0; i < read.size(); ++i) {
       REQUIRE(read[i].time == written[i].time);
@@ -298,7 +298,7 @@ TEST_CASE("an increment needs a positive length") {
                                "dv_z_mps\n1,1,0,0,0,0,0,0\n2,0,0,0,0,0,0,0\n3,-1,0,0,0,0,0,0\n"
                                "4,1,0,0,0,0,0,0\n"));
   CHECK(all(reader).size() == 2);
-  CHECK(reader.report().count(LineDamage::kOutOfRange) == 2);
+  CHECK(reader.summary().count(LineDamage::kOutOfRange) == 2);
 }
 
 TEST_CASE("every recorded drive reads whole and clean" * doctest::test_suite("heavy")) {
@@ -316,9 +316,9 @@ TEST_CASE("every recorded drive reads whole and clean" * doctest::test_suite("he
     }
     ImuLogReader reader(drive.path() / "imu.csv.gz");
     const auto increments = all(reader);
-    CHECK(reader.report().clean());
-    CHECK(reader.report().lines == lines.line_number() - 1);  // without the header
-    CHECK(reader.report().records == lines.line_number() - 2);
+    CHECK(reader.summary().clean());
+    CHECK(reader.summary().lines == lines.line_number() - 1);  // without the header
+    CHECK(reader.summary().records == lines.line_number() - 2);
     for (const ImuIncrement& inc : increments) {
       REQUIRE(near(inc.dt_s, 0.01005, 0.00005));  // 10.05 ms, straight-line fit of the counter
     }

@@ -30,7 +30,7 @@ TEST_CASE("a value is enough; its sigma may be missing in the log or in a row") 
   ScalarLogReader full(dir.file("b.csv", "t_s,speed_mps,sigma_mps\n0,1,0.5\n1,2,\n"), kSpeed);
   CHECK(full.next()->sigma == 0.5);
   CHECK(std::isnan(full.next()->sigma));
-  CHECK(full.report().records == 2);
+  CHECK(full.summary().records == 2);
 }
 
 TEST_CASE("a damaged line costs that line") {
@@ -49,7 +49,7 @@ TEST_CASE("a damaged line costs that line") {
   CHECK(reader.next()->value == 2.0);  // at 0.5 s
   CHECK(reader.next()->value == 3.0);
   CHECK_FALSE(reader.next());
-  CHECK(reader.report().damaged_lines() == 4);
+  CHECK(reader.summary().damaged_lines() == 4);
 }
 
 TEST_CASE("a log of something else is refused, naming the column") {

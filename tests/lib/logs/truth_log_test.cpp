@@ -52,9 +52,9 @@ TEST_CASE("position alone is enough; velocity and attitude are groups") {
   CHECK(no_attitude->has_velocity);
   CHECK(!no_attitude->has_attitude);
   CHECK(!full.next());
-  CHECK(full.report().records == 3);
-  CHECK(full.report().count(LineDamage::kNotANumber) == 1);
-  CHECK(full.report().count(LineDamage::kOutOfRange) == 1);
+  CHECK(full.summary().records == 3);
+  CHECK(full.summary().count(LineDamage::kNotANumber) == 1);
+  CHECK(full.summary().count(LineDamage::kOutOfRange) == 1);
 }
 
 TEST_CASE("missing columns are named") {
@@ -124,7 +124,7 @@ TEST_CASE("written truth reads back") {
   REQUIRE(second);
   CHECK(!second->has_velocity);
   CHECK(!second->has_attitude);
-  CHECK(reader.report().clean());
+  CHECK(reader.summary().clean());
 }
 
 }  // namespace

@@ -198,11 +198,11 @@ TEST_CASE("the budget adds up to the true error, and each source to what it does
   const CovarianceAnalysis whole = analyze(scene, track, config);
   config.by_source = true;
   const CovarianceAnalysis split = analyze(scene, track, config);
-  const auto horizontal = [](const BudgetLine& line) {
+  const auto horizontal = [](const ErrorBudgetLine& line) {
     return line.mean_sq_n_m2.topLeftCorner<2, 2>().trace();
   };
   double sum_m2 = 0.0;
-  for (const BudgetLine& line : split.budget) {
+  for (const ErrorBudgetLine& line : split.error_budget) {
     CAPTURE(name(line.source));
     CHECK(horizontal(line) >= 0.0);
     sum_m2 += horizontal(line);
@@ -221,7 +221,7 @@ TEST_CASE("the budget adds up to the true error, and each source to what it does
     rest_m2 = horizontal_covariance(p.r_e_m, p.truth.block<3, 3>(kDr, kDr)).trace();
   };
   without = analyze(scene, track, config);
-  for (const BudgetLine& line : split.budget) {
+  for (const ErrorBudgetLine& line : split.error_budget) {
     if (line.source != ErrorSource::kAccelerometerMisalignment) continue;
     CHECK(horizontal(line) > 0.005 * sum_m2);
     CHECK(std::abs((sum_m2 - rest_m2) / horizontal(line) - 1.0) < 1e-6);

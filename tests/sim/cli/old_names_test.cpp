@@ -45,7 +45,7 @@ TEST_CASE("the old name of a scene's [limit] works, with a note on standard erro
       text.replace(at, 7, "[budget]");
     }
   }
-  const std::string command = "analyze --json --scene ";
+  const std::string command = "interval --json --imu tactical --limit 10 --at 300 --scene ";
   check_renamed(command + quoted(named("old")), command + quoted(named("new")),
                 named("old").string() + ": [budget] is now called [limit]");
 }

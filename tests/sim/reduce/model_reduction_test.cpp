@@ -244,7 +244,7 @@ TEST_CASE("a filter file has another scene's filter run alike") {
   CHECK(other.filter.gate_probability == scene.filter.gate_probability);
 }
 
-TEST_CASE("the reduced filter in a campaign errs as it does in the budget") {
+TEST_CASE("the reduced filter in a campaign errs as it does in the reduction") {
   // The same trials through Ekf and Trial: another filter class, another loop.
   Scene scene = drive_scene();
   scene.trials = 4;
@@ -252,13 +252,13 @@ TEST_CASE("the reduced filter in a campaign errs as it does in the budget") {
       full_model(scene), {ModelTerm::kFifthRate, ModelTerm::kTenthCovariance, ModelTerm::kBiasDecay,
                           ModelTerm::kCoriolis, ModelTerm::kSculling});
   const TrialPlan plan(scene, {}, 1);
-  const MeasuredAccuracy in_budget = measured({case_of(plan, model)}, 1, {}).front();
+  const MeasuredAccuracy in_reduction = measured({case_of(plan, model)}, 1, {}).front();
   Scene reduced = with_model(scene, model);
   reduced.filter.gate_probability = 0.0;
   const CampaignResult campaigned = campaign(reduced);
-  CHECK(campaigned.epochs == in_budget.figures.epochs);
+  CHECK(campaigned.epochs == in_reduction.figures.epochs);
   // Rounding, and where in the covariance interval a filter that goes back begins again.
-  CHECK(near(campaigned.rms_horizontal_m, in_budget.figures.rms_horizontal_m, 1e-3));
+  CHECK(near(campaigned.rms_horizontal_m, in_reduction.figures.rms_horizontal_m, 1e-3));
 }
 
 TEST_CASE("honesty is judged beside the full model") {
@@ -281,7 +281,7 @@ TEST_CASE("honesty is judged beside the full model") {
   CHECK(agrees(term, 1.0));
 }
 
-TEST_CASE("what a budget cannot be made of is refused") {
+TEST_CASE("what cannot be reduced is refused") {
   Scene scene = drive_scene();
   scene.gnss.latency_s = 10.0;
   CHECK_THROWS_WITH_AS(reduce_model(scene), doctest::Contains("latency_s"), Error);

@@ -54,13 +54,13 @@ constexpr auto names(ErrorSource) {
 }
 
 /// What one source contributes.
-struct BudgetLine {
+struct ErrorBudgetLine {
   ErrorSource source{};
   Eigen::Matrix3d mean_sq_n_m2{Eigen::Matrix3d::Zero()};  ///< E[x x^T], north, east, down
 };
 
 /// The sources that the scene has. Their mean squares add up to that of the error.
-using ErrorBudget = std::vector<BudgetLine>;
+using ErrorBudget = std::vector<ErrorBudgetLine>;
 
 /// A moment of the scene.
 struct CovariancePoint {
@@ -91,11 +91,11 @@ struct CovarianceAnalysis {
   double true_drms_m{};     ///< a Monte Carlo of the scene averages
   double worst_s{};         ///< when the true one is largest
   CovariancePoint worst{};  ///< there
-  ErrorBudget budget{};     ///< there; empty unless by_source
-  double window_s{};        ///< the last part
-  std::size_t fixes{0};     ///< used by the filter
-  bool settled{false};      ///< every sigma repeats to 0.1 % from one such part to the next
-  double settled_s{};       ///< since when; the scene's end where it has not settled
+  ErrorBudget error_budget{};  ///< there; empty unless by_source
+  double window_s{};           ///< the last part
+  std::size_t fixes{0};        ///< used by the filter
+  bool settled{false};         ///< every sigma repeats to 0.1 % from one such part to the next
+  double settled_s{};          ///< since when; the scene's end where it has not settled
 };
 
 /// The linearized dynamics that analyze() needs; those of one scene serve it with any GNSS.

@@ -60,7 +60,7 @@ std::string_view substitute(ModelTerm term);
 /// The terms that mean something in the scene. @param scene  as by reduce_model()
 std::vector<ModelTerm> terms_of(const Scene& scene);
 
-/// A filter that the budget can run.
+/// A filter that a reduction can run.
 struct FilterModel {
   EkfConfig config{};
   int imu_divider{1};

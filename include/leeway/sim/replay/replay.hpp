@@ -65,10 +65,10 @@ struct ReplayResult {
   std::optional<Eigen::Vector3d>
       mount_rpy_deg{};      ///< found: Rz(Y) Ry(P) Rx(R), to forward, right, down
   double final_roll_deg{};  ///< attitude at the end: beyond 90 deg the mount is upside down
-  LogSummary imu_report{};
-  LogSummary gnss_report{};
-  LogSummary truth_report{};
-  std::array<LogSummary, kAidings.size()> aiding_reports{};
+  LogSummary imu_summary{};
+  LogSummary gnss_summary{};
+  LogSummary truth_summary{};
+  std::array<LogSummary, kAidings.size()> aiding_summaries{};
 };
 
 /// A branch without fixes, at the time of a withheld fix or at its end.
