@@ -91,9 +91,12 @@ void SymmetricKernel<Scalar>::propagate(const ErrorDynamics& step, const Process
 
 template <class Scalar>
 void SymmetricKernel<Scalar>::turn_attitude(const Eigen::Matrix3d& J) {
-  ErrorMatrix P = matrix();
-  transform_block(P, kPsi, J);
-  set(ErrorMatrix(P.selfadjointView<Eigen::Lower>()));  // symmetric to the bit
+  const Eigen::Matrix<Scalar, 3, 3>& T = J.cast<Scalar>();
+  Eigen::Matrix<Scalar, 3, kPaddedStates> rows = T * P_.template middleRows<3>(kPsi);
+  const Eigen::Matrix<Scalar, 3, 3> block = rows.template middleCols<3>(kPsi) * T.transpose();
+  rows.template middleCols<3>(kPsi) = block.template selfadjointView<Eigen::Lower>();
+  P_.template middleRows<3>(kPsi) = rows;
+  P_.template middleCols<3>(kPsi) = rows.transpose();
 }
 
 template <class Scalar>
@@ -124,12 +127,8 @@ std::optional<Scalar> SymmetricKernel<Scalar>::take_at_once(ErrorVector& x_hat,
   RowColumns<Scalar, kPaddedStates> columns = RowColumns<Scalar, kPaddedStates>::Zero();
   RowValues<Scalar> innovation = RowValues<Scalar>::Zero();
   for (int i = 0; i < rows; ++i) {
-    double predicted = 0.0;
-    for (int k = 0; k < kErrorStates; ++k) {
-      columns(k, i) = static_cast<Scalar>(H(i, k));
-      predicted += H(i, k) * x_hat(k);
-    }
-    innovation(i) = static_cast<Scalar>(z(i) - predicted);
+    columns.col(i).template head<kErrorStates>() = H.row(i).transpose().template cast<Scalar>();
+    innovation(i) = static_cast<Scalar>(z(i) - H.row(i).dot(x_hat));
   }
   PaddedVector<Scalar> x;
   const double shrinkage =

@@ -65,7 +65,7 @@ UpdateOutcome BasicEkf<Kernel, Error>::judge(const Measurement& m) {
 template <CovarianceKernel Kernel, class Error>
 void BasicEkf<Kernel, Error>::fuse(const Measurement& m, int position_rows, double position_weight,
                                    Held held) {
-  const WhiteMeasurement white = whitened(m, position_rows, position_weight);
+  const WhiteMeasurement white = whitened(m, position_rows, position_weight, vehicle_.has_value());
   if constexpr (SettableKernel<Kernel>) {
     if (vehicle_ || held != Held::kNothing) {
       Belief present = belief();
@@ -146,7 +146,8 @@ Belief BasicEkf<Kernel, Error>::belief() const {
 template <CovarianceKernel Kernel, class Error>
 void BasicEkf<Kernel, Error>::set(const Belief& belief) requires SettableKernel<Kernel> {
   inertial_.set(belief.estimate);
-  covariance_.set(belief.P);
+  // clang 14 instantiates this for every kernel, whatever the constraint says.
+  if constexpr (SettableKernel<Kernel>) covariance_.set(belief.P);
   vehicle_ = belief.vehicle;
 }
 
@@ -156,7 +157,7 @@ void BasicEkf<Kernel, Error>::turn_body_axes(const Eigen::Matrix3d& C_new_old,
     SettableKernel<Kernel> {
   ErrorMatrix P = covariance();
   for (const int bias : {kBa, kBg}) transform_block(P, bias, C_new_old);
-  covariance_.set(P);
+  if constexpr (SettableKernel<Kernel>) covariance_.set(P);
   inertial_.turn_body_axes(C_new_old, lever_arm_b_m);
   vehicle_.reset();
 }

@@ -20,7 +20,9 @@ struct WhiteMeasurement {
 
 /// The measurement by the Cholesky factor of R, its position rows times a weight.
 /// @param position_rows  how many rows come first that are of a position
-WhiteMeasurement whitened(const Measurement& m, int position_rows, double position_weight);
+/// @param with_vehicle   whether H_vehicle is wanted; else it is left empty
+WhiteMeasurement whitened(const Measurement& m, int position_rows, double position_weight,
+                          bool with_vehicle);
 
 /// S = H P H^T + R, with the vehicle's part where there is one.
 MeasurementMatrix innovation_covariance(const Measurement& m, const ErrorMatrix& P,

@@ -9,7 +9,7 @@
 namespace leeway {
 namespace {
 
-struct Range {
+struct TableRange {
   double low;
   double high;
 
@@ -27,10 +27,10 @@ struct Range {
 };
 
 struct Table1Row {
-  Range accelerometer_drift_mps2;
-  Range gyro_drift_radps;
-  Range accelerometer_noise_ug_per_sqrt_hz;
-  Range gyro_noise_deg_per_sqrt_h;
+  TableRange accelerometer_drift_mps2;
+  TableRange gyro_drift_radps;
+  TableRange accelerometer_noise_ug_per_sqrt_hz;
+  TableRange gyro_noise_deg_per_sqrt_h;
 };
 
 // [seed Table 1], in the order of ImuClass
@@ -45,9 +45,9 @@ constexpr std::array<Table1Row, 5> kTable1{{
 const Table1Row& row(ImuClass c) { return kTable1[static_cast<std::size_t>(c)]; }
 
 /// The class whose range is nearest on a logarithmic scale; of two as near, the better one.
-ImuClass nearest(Range Table1Row::*range, double value) {
+ImuClass nearest(TableRange Table1Row::*range, double value) {
   const auto distance = [range, value](ImuClass c) {
-    const Range& r = row(c).*range;
+    const TableRange& r = row(c).*range;
     // A unit conversion may leave the end of a range by an ulp.
     constexpr double kRounding = 1e-12;
     const double outside = std::max(std::log(r.low / value), std::log(value / r.high));

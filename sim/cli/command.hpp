@@ -28,12 +28,13 @@ inline std::map<std::string, AddCommand>& commands() {
 }
 
 /// A command, defined once at namespace scope: that puts it among commands().
+/// @tparam Options  the type of what run() takes
+template <class Options>
 struct Command {
   /// @param about        a line in the help of the program
   /// @param footer       the end of the command's own help: remarks and examples
   /// @param add_options  tells what the options are and where they go
   /// @param run          gives the exit code, or throws
-  template <class Options>
   Command(const char* name, const char* about, const char* footer,
           void (*add_options)(CLI::App&, Options&), int (*run)(const Options&)) {
     commands()[name] = [=](CLI::App& program, int& exit_code) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMostWaypoints = 2000.0;
 constexpr std::size_t kMostBreaks = 1'000'000;
-constexpr double kFarthestM = 7e6;
+constexpr double kFarthestWaypointM = 7e6;
 constexpr double kSlowestMps = 0.01;
 constexpr double kFastestMps = 1e4;
 
@@ -45,7 +45,7 @@ void validate(const WaypointParameters& p) {
             between(may_rest ? 0.0 : kSlowestMps, kFastestMps));
     require(name.c_str(), "stop_s", w.stop_s.value_or(0.0), between(0.0, 1e6));
     require(name.c_str(), "distance from the first, m,",
-            (ecef_from_geodetic(w.position) - start_e_m).norm(), between(0.0, kFarthestM));
+            (ecef_from_geodetic(w.position) - start_e_m).norm(), between(0.0, kFarthestWaypointM));
   }
 }
 

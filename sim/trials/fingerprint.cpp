@@ -30,7 +30,7 @@ std::uint64_t hash_of(std::string_view bytes) {
 std::uint64_t fingerprint(const TrialPlan& plan) {
   std::string bytes = LEEWAY_VERSION;
   const auto add = [&bytes](const auto& value) {
-    const auto its_bytes = bytes_of(value);
+    const auto its_bytes = leeway::bytes_of(value);
     bytes.append(reinterpret_cast<const char*>(its_bytes.data()), its_bytes.size());
   };
   walk_fields(plan.scene(), [&add](const FieldPath& path, const auto& value, const Range&) {

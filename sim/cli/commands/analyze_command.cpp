@@ -216,7 +216,7 @@ void add_options(CLI::App& app, AnalyzeChoice& options) {
   add_output_options(app, options.output);
 }
 
-const Command kAnalyze{
+const Command<AnalyzeChoice> kAnalyze{
     "analyze", "What the filter claims in a scene, what is true, and where the error comes from",
     "Example:\n"
     "  leeway analyze --scene docs/examples/scenes/town-car.toml --interval-s 5 --error-budget "

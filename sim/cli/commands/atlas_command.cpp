@@ -82,7 +82,7 @@ void add_options(CLI::App& app, AtlasChoice& options) {
       ->excludes(brief);
 }
 
-const Command kAtlas{
+const Command<AtlasChoice> kAtlas{
     "atlas", "Scenes in which methods break, run against every variant, with expected verdicts",
     "Exits with 2 when a cell is not as expected, or a variant of the library fails and no\n"
     "detector says so.\n"

@@ -185,7 +185,7 @@ void add_options(CLI::App& app, CampaignChoice& options) {
   add_output_options(app, options.output);
 }
 
-const Command kCampaign{
+const Command<CampaignChoice> kCampaign{
     "campaign", "Whether the filter errs as much as it claims: Monte Carlo trials of a scene",
     "Results are the same to the bit on any number of threads and ranks.\n"
     "Examples:\n"

@@ -170,7 +170,7 @@ void add_options(CLI::App& app, CompareChoice& options) {
       ->group("");
 }
 
-const Command kCompare{
+const Command<CompareChoice> kCompare{
     "compare", "What each way of running the filter costs in a scene, and how much it errs",
     "Without --at: the first 600 s of the scene, or ten fixes. Errors are the same to the bit\n"
     "whenever asked for; costs are of this machine, now.\n"

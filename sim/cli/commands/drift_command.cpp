@@ -171,9 +171,9 @@ void add_options(CLI::App& app, DriftChoice& options) {
   add_output_options(app, options.output);
 }
 
-const Command kDrift{"drift",
-                     "How far each class of IMU drifts on its own, from a perfect start at rest",
-                     "Example:\n  leeway drift --trials 500 --curves drift.csv", add_options, run};
+const Command<DriftChoice> kDrift{
+    "drift", "How far each class of IMU drifts on its own, from a perfect start at rest",
+    "Example:\n  leeway drift --trials 500 --curves drift.csv", add_options, run};
 
 }  // namespace
 }  // namespace leeway::cli

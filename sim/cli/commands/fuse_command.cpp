@@ -191,7 +191,7 @@ void add_options(CLI::App& app, FuseOptions& options) {
   add_solution_options(app, options.output);
 }
 
-const Command kFuse{
+const Command<FuseOptions> kFuse{
     "fuse", "Fuse an IMU and a GNSS log, and tell how far the solution is off",
     "Examples:\n"
     "  leeway fuse --imu imu.csv --gnss gnss.csv --truth truth.csv --out solution.csv\n"

@@ -239,9 +239,9 @@ void add_options(CLI::App& app, ShownChoice& options) {
   add_json_option(app, options.output.json);
 }
 
-const Command kImu{"imu", "Error model of an IMU: its datasheet, the conversions, its class",
-                   "Examples:\n  leeway imu STIM300\n  leeway imu tactical --range high",
-                   add_options, run};
+const Command<ShownChoice> kImu{
+    "imu", "Error model of an IMU: its datasheet, the conversions, its class",
+    "Examples:\n  leeway imu STIM300\n  leeway imu tactical --range high", add_options, run};
 
 }  // namespace
 }  // namespace leeway::cli

@@ -100,7 +100,7 @@ void add_options(CLI::App& app, IntervalChoice& options) {
   add_output_options(app, options.output);
 }
 
-const Command kInterval{
+const Command<IntervalChoice> kInterval{
     "interval", "The longest time between fixes for which the error stays within a limit",
     "Without --imu: the five classes of the source paper, and the scene's own IMU. Without\n"
     "--limit: 1, 3, 10, 30 and 100 m.\n"

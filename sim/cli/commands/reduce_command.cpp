@@ -187,7 +187,7 @@ void add_options(CLI::App& app, ReduceChoice& options) {
   add_output_options(app, options.output);
 }
 
-const Command kReduce{
+const Command<ReduceChoice> kReduce{
     "reduce",
     "What each term of the filter's model is worth in a scene, what it costs, and the cheapest "
     "filter that keeps the limit",

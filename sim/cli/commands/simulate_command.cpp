@@ -283,7 +283,7 @@ void add_options(CLI::App& app, SimulateChoice& options) {
   add_json_option(app, options.output.json);
 }
 
-const Command kSimulate{
+const Command<SimulateChoice> kSimulate{
     "simulate", "Make IMU, GNSS and truth logs of a drive, for leeway fuse to read",
     "The GNSS defaults are typical of a single-frequency code receiver under open sky.\n"
     "Example:\n"

@@ -76,7 +76,7 @@ TEST_CASE("wrong usage exits with 1 and one line that names what is wrong") {
   } cases[] = {
       {"", "subcommand"},
       {"flie", "did you mean 'fuse'?"},
-      {"campaign --scene x --first-seed -1", "-1 not in range 0 to"},
+      {"campaign --scene x --first-seed -1", "--first-seed: -1 is below 0"},
       {"campaign --scene x --limit -3", "-3 is not above 0"},
       {"drift --trials many", "--trials"},
       {"drift --trials 1", "trials"},

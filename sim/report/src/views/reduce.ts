@@ -96,11 +96,15 @@ function termGrid(terms: readonly Term[]): Grid {
 }
 
 function errorChart(terms: readonly Term[], limit_m: number): Chart {
-  const bars = (label: string, colour: number, thin: boolean, pick: (t: Term) => number | null): Series => ({
-    label, style: "bars", colour, thin, y: terms.map((_term, i) => i),
-    x: terms.map((term) => pick(term) || NaN),
-    names: terms.map((term) => (term.kept ? "kept" : "left out")),
-  });
+  // A logarithmic axis has no place for nothing.
+  const bars = (label: string, colour: number, thin: boolean, pick: (t: Term) => number | null): Series => {
+    const shown = terms.map((_term, i) => i).filter((i) => pick(terms[i]!));
+    return {
+      label, style: "bars", colour, thin, y: shown,
+      x: shown.map((i) => pick(terms[i]!)!),
+      names: shown.map((i) => (terms[i]!.kept ? "kept" : "left out")),
+    };
+  };
   return {
     id: "terms-error",
     title: "The error that each term saves",
