@@ -69,6 +69,7 @@ void SourceCovariance<kFilters>::step_errors(const Leg& leg) {
     P.transposeInPlace();
     carry(leg.Phi, P);
     add_shared(0, half);
+    P = (0.5 * (P + P.transpose())).eval();  // as for one: update() does not damp the asymmetry
   }
 }
 
