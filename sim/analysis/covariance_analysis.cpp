@@ -1,7 +1,6 @@
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>

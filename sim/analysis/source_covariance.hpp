@@ -7,7 +7,6 @@
 #include <array>
 #include <vector>
 
-#include "leeway/covariance/covariance.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/model/process_noise.hpp"
 #include "leeway/sensors/imu_error_model.hpp"

@@ -1,8 +1,6 @@
 #include "leeway/sim/atlas/atlas.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/tools/parallel.hpp"

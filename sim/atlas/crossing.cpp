@@ -5,7 +5,6 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
-#include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/waypoints.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/free_run.hpp"

@@ -6,7 +6,6 @@
 #include <map>
 #include <string_view>
 
-#include "leeway/earth/error.hpp"
 #include "leeway/sim/atlas/atlas_expected.hpp"
 #include "sim/atlas/committed_verdicts.hpp"
 

@@ -4,11 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstddef>
 #include <string>
 
-#include "leeway/sim/motion/trajectory.hpp"
 #include "leeway/strapdown/integration_monitor.hpp"
 #include "leeway/strapdown/strapdown.hpp"
 

@@ -1,7 +1,5 @@
 #include "sim/atlas/town_drive.hpp"
 
-#include "leeway/model/initial_covariance.hpp"
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 
 namespace leeway::sim {

@@ -4,7 +4,6 @@
 
 #include <array>
 
-#include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
 #include "sim/atlas/free_run.hpp"
 

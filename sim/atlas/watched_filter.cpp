@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "leeway/ekf/ekf_config.hpp"
 #include "leeway/ekf/update_outcome.hpp"

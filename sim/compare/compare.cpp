@@ -6,8 +6,6 @@
 #include <limits>
 #include <set>
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/compare/pareto.hpp"

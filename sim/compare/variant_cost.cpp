@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "leeway/ekf/ekf_config.hpp"
-
 namespace leeway::sim {
 
 double timed_ns_per_s(const FilterCase& one, GivenTrials& given) {

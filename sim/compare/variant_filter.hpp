@@ -3,7 +3,6 @@
 #pragma once
 
 #include <concepts>
-#include <utility>
 
 #include "leeway/alternatives/dense_kernel.hpp"
 #include "leeway/alternatives/invariant_ekf.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
-#include <string>
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"

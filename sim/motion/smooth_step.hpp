@@ -3,8 +3,6 @@
 /// changes of height are made of.
 #pragma once
 
-#include "leeway/sim/motion/jet.hpp"
-
 namespace leeway::sim {
 
 /// 10 x^3 - 15 x^4 + 6 x^5, for x in 0 to 1.

@@ -2,7 +2,6 @@
 /// How fast a path is travelled: distance as a closed form of time, from speed limits along it.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "leeway/sim/motion/jet.hpp"

@@ -2,7 +2,6 @@
 /// What the parts of reduce_model() know of each other.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "leeway/model/error_state.hpp"
 #include "sim/reduce/reduction_parts.hpp"

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <utility>
 
-#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/logs/solution_writer.hpp"
 #include "sim/replay/outage_branch.hpp"

@@ -1,9 +1,5 @@
 #include "leeway/sim/sensors/gnss_simulator.hpp"
 
-#include <cmath>
-#include <sstream>
-#include <string>
-
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/sensors/imu_error_model.hpp"

@@ -1,6 +1,5 @@
 #include "leeway/sim/sensors/imu_catalogue.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 

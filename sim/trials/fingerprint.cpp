@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <string>
 
-#include "leeway/ekf/ekf_config.hpp"
-#include "leeway/model/initial_covariance.hpp"
 #include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {

@@ -1,5 +1,3 @@
-#include <string>
-
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"

@@ -3,7 +3,6 @@
 #include <array>
 
 #include "leeway/sim/atlas/atlas.hpp"
-#include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
 #include "sim/atlas/free_run.hpp"

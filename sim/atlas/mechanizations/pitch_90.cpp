@@ -1,6 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -8,7 +7,6 @@
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
-#include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/free_run.hpp"

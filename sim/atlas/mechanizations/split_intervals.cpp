@@ -1,8 +1,4 @@
-#include <array>
-#include <cmath>
-
 #include "leeway/sim/atlas/atlas.hpp"
-#include "leeway/sim/compare/variant.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/random.hpp"

@@ -11,7 +11,6 @@
 
 #include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
-#include "leeway/model/horizontal.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
 #include "leeway/sim/scene/scene.hpp"
 

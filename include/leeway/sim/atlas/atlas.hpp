@@ -3,10 +3,8 @@
 /// running the filter, and what became of it.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "leeway/earth/names.hpp"

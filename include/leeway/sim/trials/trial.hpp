@@ -9,7 +9,6 @@
 #include <optional>
 #include <vector>
 
-#include "leeway/model/error_state.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
