@@ -6,12 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
-#include "sim/analysis/scene_covariance.hpp"
+#include "sim/analysis/truth_model.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -28,6 +29,66 @@ double step_limit_s(const ImuErrorModel& imu) {
     if (triad->in_run.sigma > 0.0) shortest_s = std::min(shortest_s, triad->in_run.tau_s);
   }
   return std::max(0.1 * shortest_s, 0.01);
+}
+
+ErrorMatrix initial_claim(const Scene& scene) {
+  return initial_covariance({truth_at(scene.trajectory, 0.0).nav, {}}, initial_sigma(scene),
+                            scene.filter.imu, scene.filter.biases);
+}
+
+ErrorMatrix without_biases(ErrorMatrix P) {
+  P.bottomRightCorner<6, 6>().setZero();
+  return P;
+}
+
+/// The covariance that a scene's filter claims and the true one, side by side.
+class SceneCovariance {
+ public:
+  /// At the scene's start. @param by_source  keeps the sources apart, for error_budget()
+  SceneCovariance(const Scene& scene, bool by_source);
+
+  void propagate(const Leg& leg);
+
+  /// Takes the fix into both with the filter's gains.
+  void update(const FixRows& fix);
+
+  const ErrorMatrix& claimed() const { return P_; }
+  ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
+
+  /// @pre made by source.
+  ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
+
+ private:
+  ProcessNoise noise_;
+  ErrorMatrix P_;
+  std::optional<TruthModel<1>> truth_;  // none: the filter knows all there is, P is the truth
+};
+
+SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
+    : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
+      P_(initial_claim(scene)),
+      truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
+  const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
+  if (fixes_as_white && truth_->is_known_to(P_, fix_variance(scene.gnss.errors))) {
+    truth_.reset();
+  }
+}
+
+void SceneCovariance::propagate(const Leg& leg) {
+  leeway::propagate(P_, leg.Phi, noise_);
+  if (truth_) truth_->propagate(leg);
+}
+
+void SceneCovariance::update(const FixRows& fix) {
+  FixGains<1> gains;
+  for (int row = 0; row < fix.H.rows(); ++row) {
+    const ErrorVector h = fix.H.row(row).transpose();
+    const ErrorVector cross = P_ * h;
+    gains.col(row) = cross / (h.dot(cross) + 1.0);
+    ErrorVector none = ErrorVector::Zero();
+    scalar_update(P_, none, h, 0.0);
+  }
+  if (truth_) truth_->update(fix, gains);
 }
 
 /// The extremes of a stretch of the scene.
@@ -110,8 +171,8 @@ class Analysis {
     r.true_m = true_m;
     r.worst_s = t_s;
     r.worst = before;
-    if (config_.by_source)
-      r.error_budget = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
+    if (!config_.by_source) return;
+    r.error_budget = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
   }
 
   void enter_window(double t_s) {
@@ -176,13 +237,6 @@ class Analysis {
   std::optional<double> settled_s_{};
 };
 
-/// From a perfect start: the biases are all there is.
-Scene perfectly_started(const Scene& scene) {
-  Scene perfect = scene;
-  perfect.initial = InitialSigma{};
-  return perfect;
-}
-
 }  // namespace
 
 ErrorTrack error_track(const Scene& scene, double step_s) {
@@ -196,7 +250,9 @@ ErrorTrack error_track(const Scene& scene, double step_s) {
 void free_inertial(const Scene& scene, const ErrorTrack& track,
                    const std::function<bool(const CovariancePoint&)>& observer) {
   validate(scene);
-  SceneCovariance pair(perfectly_started(scene), false);
+  Scene perfectly_started = scene;
+  perfectly_started.initial = InitialSigma{};
+  SceneCovariance pair(perfectly_started, false);
   CovariancePoint point;
   do {
     const Leg leg = track.leg(point.t_s, scene.duration_s);

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -30,11 +29,8 @@ ParameterMatrix parameter_input(const Eigen::Matrix3d& C_eb, const Eigen::Vector
 ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
                        const ErrorTrackConfig& config)
     : config_(config) {
-  if (!(config.step_s >= 0.01 && config.step_s <= 100.0)) {
-    throw Error("error track: step_s is " + std::to_string(config.step_s) +
-                ", must be 0.01 to 100 s");
-  }
-  if (!(duration_s > 0.0)) throw Error("error track: duration_s must be > 0");
+  require("error track", "step_s", config.step_s, between(0.01, 100.0));
+  require("error track", "duration_s", duration_s, kPositive);
   const double period_s = trajectory.period_s.value_or(duration_s);
   const double span_s = std::min(period_s, duration_s);
   const auto steps = static_cast<std::size_t>(std::ceil(span_s / config.step_s - kSlack));

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <string>
 
-#include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -17,19 +16,10 @@ constexpr int kMostSecants = 60;
 
 void validate(const Scene& scene, const std::vector<double>& limits_m,
               const IntervalConfig& config) {
-  for (const double limit_m : limits_m) {
-    if (!(limit_m > 0.0 && limit_m <= 1e6)) {
-      throw Error("limit is " + std::to_string(limit_m) + " m, must be > 0 and at most 1e6 m");
-    }
-  }
-  if (!(config.shortest_s >= 0.01 && config.shortest_s < 0.5 * scene.duration_s)) {
-    throw Error("shortest interval is " + std::to_string(config.shortest_s) +
-                " s, must be 0.01 s to half the scene's duration of " +
-                std::to_string(scene.duration_s) + " s");
-  }
-  if (!(config.tolerance >= 1e-6 && config.tolerance <= 0.1)) {
-    throw Error("tolerance is " + std::to_string(config.tolerance) + ", must be 1e-6 to 0.1");
-  }
+  for (const double limit_m : limits_m) require("interval", "limit_m", limit_m, positive_to(1e6));
+  const double half_s = std::nextafter(0.5 * scene.duration_s, 0.0);
+  require("interval", "shortest_s", config.shortest_s, between(0.01, half_s));
+  require("interval", "tolerance", config.tolerance, between(1e-6, 0.1));
 }
 
 /// A point of the curve error over interval, in logarithms: nearly a straight line.

@@ -1,5 +1,6 @@
 #include "sim/analysis/source_covariance.hpp"
 
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/model/process_noise.hpp"
 
 namespace leeway::sim {

@@ -15,14 +15,16 @@ namespace leeway::sim {
 /// at 50 Hz with a fix every second.
 Scene crossing(const Geodetic& from, const Geodetic& to);
 
-/// Strapdowns on perfect increments: error of the position at the end.
+/// Strapdowns on perfect increments, those in latitude and longitude too: error of the position at
+/// the end.
 std::vector<AtlasCell> crossed_without_fixes(const Scene& scene, const std::string& condition);
 
 /// Filters with fixes: RMS error of the position before each.
 std::vector<AtlasCell> crossed_with_fixes(const Scene& scene, const std::string& condition,
                                           int trials);
 
-/// NedMechanization, corrected by a share of the true position every second; 0: never.
+/// A strapdown in latitude and longitude, corrected by a share of the true position every second;
+/// 0: never.
 AtlasCell crossed_in_latitude_and_longitude(const Scene& scene, const std::string& condition,
                                             double share);
 

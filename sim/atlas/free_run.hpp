@@ -5,10 +5,13 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "leeway/strapdown/integration_monitor.hpp"
 #include "leeway/strapdown/strapdown.hpp"
+#include "sim/atlas/cells.hpp"
 
 namespace leeway::sim {
 
@@ -31,35 +34,38 @@ class WatchedIncrements {
   bool resolved_{true};
 };
 
-struct FreeRun {
-  NavState nav{};
-  std::string reported{};
-};
-
+/// The cell of a scheme that runs freely.
 /// @param increments  anything with size() and []
-/// @param observe     called with the state after every increment
-template <class Increments, class Observe>
-FreeRun free_run(const NavState& start, const Increments& increments, const StrapdownPolicy& policy,
-                 Observe&& observe) {
-  FreeRun run{start};
-  WatchedIncrements watched(policy.scheme);
+/// @param figure      called with the state after every increment: what it says last counts
+template <class Increments, class Figure>
+AtlasCell free_run(Scheme scheme, const std::string& condition, const NavState& start,
+                   const Increments& increments, Figure&& figure) {
+  AtlasCell cell{AtlasGroup::kStrapdown, std::string(name(scheme)), condition};
+  NavState nav = start;
+  WatchedIncrements watched(scheme);
   ImuHistory history;
-  const StrapdownFunction step = strapdown_function(policy);
+  const StrapdownFunction step = strapdown_function({scheme});
   for (std::size_t k = 0; k < increments.size(); ++k) {
     const ImuIncrement& inc = increments[k];
-    step(run.nav, inc, history);
-    run.nav.time = inc.time;
+    step(nav, inc, history);
+    nav.time = inc.time;
     watched.push(inc);
-    observe(run.nav);
+    cell.figure = figure(nav);
   }
-  run.reported = watched.reported();
-  return run;
+  cell.reported = watched.reported();
+  return cell;
 }
 
-template <class Increments>
-FreeRun free_run(const NavState& start, const Increments& increments,
-                 const StrapdownPolicy& policy) {
-  return free_run(start, increments, policy, [](const NavState&) {});
+/// Cells of schemes, each with a figure of its own.
+template <class Increments, class Figure>
+std::vector<AtlasCell> free_runs(std::initializer_list<Scheme> schemes,
+                                 const std::string& condition, const NavState& start,
+                                 const Increments& increments, const Figure& figure) {
+  std::vector<AtlasCell> cells;
+  for (const Scheme scheme : schemes) {
+    cells.push_back(free_run(scheme, condition, start, increments, Figure(figure)));
+  }
+  return cells;
 }
 
 /// Of the attitude, about the axes of ECEF; |error| <= pi.

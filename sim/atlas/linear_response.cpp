@@ -22,7 +22,7 @@ Estimate LinearResponse::strapdown_from(const Estimate& start) const {
   return inertial.estimate();
 }
 
-ErrorMatrix LinearResponse::truth() const {
+ErrorMatrix LinearResponse::true_moment() const {
   const Estimate right = strapdown_from(start_);
   ErrorMatrix moment = ErrorMatrix::Zero();
   for (const ErrorVector& x : start_errors_) {
@@ -40,15 +40,22 @@ ErrorMatrix LinearResponse::start_moment() const {
   return moment;
 }
 
-ErrorMatrix LinearResponse::claim(const AtlasColumn& column) const {
-  const auto filter = column.make(EkfConfig{.imu = {}}, {start_, start_moment()});
-  for (const ImuIncrement& inc : imu_) filter->predict(inc);
-  const auto P = filter->covariance();
-  return P ? *P : ErrorMatrix::Constant(std::numeric_limits<double>::quiet_NaN());
-}
-
-ErrorMatrix LinearResponse::carried(const ErrorMatrix& Phi) const {
-  return Phi * start_moment() * Phi.transpose();
+std::vector<AtlasCell> LinearResponse::compared(
+    const std::vector<AtlasColumn>& columns, const std::string& condition,
+    const std::function<double(const ErrorMatrix&)>& size, const std::string& not_offered,
+    const ErrorMatrix& Phi) const {
+  const double truth = size(true_moment());
+  const ErrorMatrix start = start_moment();
+  std::vector<AtlasCell> cells;
+  for (const AtlasColumn& column : claiming(columns)) {
+    const auto filter = column.make(EkfConfig{.imu = {}}, {start_, start});
+    for (const ImuIncrement& inc : imu_) filter->predict(inc);
+    cells.push_back({column.group, column.name, condition,
+                     factor_between(size(*filter->covariance()), truth)});
+  }
+  cells.push_back({AtlasGroup::kNotOffered, not_offered, condition,
+                   factor_between(size(Phi * start * Phi.transpose()), truth)});
+  return cells;
 }
 
 double factor_between(double claimed, double truth) {

@@ -3,6 +3,8 @@
 /// the claim of a filter that knows of that error alone.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "leeway/model/error_state.hpp"
@@ -21,16 +23,16 @@ class LinearResponse {
 
   const Estimate& start() const { return start_; }
 
-  /// Second moment of the error at the end, by runs of the strapdown that start wrong and right.
-  ErrorMatrix truth() const;
-
-  /// What a filter of this kind claims at the end, told of no noise. A failure to claim is NaN.
-  ErrorMatrix claim(const AtlasColumn& column) const;
-
-  /// Second moment of the error at the end, by a transition matrix.
-  ErrorMatrix carried(const ErrorMatrix& Phi) const;
+  /// A size of what filters claim at the end, told of no noise, over that of the truth, as a factor
+  /// of at least 1. Last the cell of a transition matrix that the library does not have.
+  std::vector<AtlasCell> compared(const std::vector<AtlasColumn>& columns,
+                                  const std::string& condition,
+                                  const std::function<double(const ErrorMatrix& moment)>& size,
+                                  const std::string& not_offered, const ErrorMatrix& Phi) const;
 
  private:
+  /// By runs of the strapdown that start wrong and right.
+  ErrorMatrix true_moment() const;
   Estimate strapdown_from(const Estimate& start) const;
   ErrorMatrix start_moment() const;
 

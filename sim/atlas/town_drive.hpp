@@ -18,9 +18,15 @@ Scene town_drive(double duration_s);
 /// trial has them, whatever times they then bear.
 using Spoil = std::function<void(RecordedTrial& trial)>;
 
-std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoil& spoil);
+/// A condition of a scene.
+struct Fault {
+  std::string condition{};
+  Spoil spoil{};
+};
 
-/// RMS horizontal error before the fixes of the last so many seconds.
-Score late_horizontal_rms_m(const Scene& scene, double last_s);
+Spoil each_increment(std::function<void(ImuIncrement&)> spoil);
+Spoil each_fix(std::function<void(GnssFix&)> spoil);
+
+std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoil& spoil);
 
 }  // namespace leeway::sim

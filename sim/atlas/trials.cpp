@@ -9,8 +9,7 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/ekf/ekf_config.hpp"
-#include "leeway/model/heading.hpp"
-#include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/horizontal.hpp"
 #include "sim/trials/player.hpp"
 
 namespace leeway::sim {
@@ -28,8 +27,9 @@ Reports common(const Reports& a, const Reports& b) {
 }
 
 AtlasCell scored_column(const AtlasColumn& column, const EkfConfig& believed,
-                        const std::vector<RecordedTrial>& trials, const Score& score) {
-  AtlasCell cell{column.group, column.name, {}, 0.0, {}};
+                        const std::vector<RecordedTrial>& trials, const std::string& condition,
+                        const Score& score) {
+  AtlasCell cell{column.group, column.name, condition};
   std::vector<std::pair<double, Reports>> outcomes;
   for (const RecordedTrial& trial : trials) {
     const auto filter = column.make(believed, trial.start);
@@ -51,14 +51,14 @@ AtlasCell scored_column(const AtlasColumn& column, const EkfConfig& believed,
 
 }  // namespace
 
-Scene car_grade_scene(const std::string& name, const Trajectory& trajectory, double duration_s,
-                      double imu_rate_hz, const InitialSigma& initial) {
+Scene drive_scene(const Trajectory& trajectory, double imu_rate_hz, const InitialSigma& initial,
+                  const ImuErrorModel& imu) {
   Scene scene;
-  scene.name = name;
+  scene.name = trajectory.name;
   scene.trajectory = trajectory;
-  scene.duration_s = duration_s;
+  scene.duration_s = std::floor(trajectory.duration_s);
   scene.imu_rate_hz = imu_rate_hz;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
+  set_imu(scene, "of the atlas", imu);
   scene.filter.gnss_correlation_s = 0.0;
   scene.initial = initial;
   return scene;
@@ -88,8 +88,7 @@ std::vector<AtlasCell> scored(const std::vector<AtlasColumn>& columns, const Ekf
                               const std::string& condition, const Score& score) {
   std::vector<AtlasCell> cells;
   for (const AtlasColumn& column : columns) {
-    cells.push_back(scored_column(column, believed, trials, score));
-    cells.back().condition = condition;
+    cells.push_back(scored_column(column, believed, trials, condition, score));
   }
   return cells;
 }
@@ -133,6 +132,12 @@ ErrorSums errors_after(WatchedFilter& filter, const RecordedTrial& trial, double
   return sums;
 }
 
+Score score_after(double from_s, double (ErrorSums::*figure)() const) {
+  return [from_s, figure](WatchedFilter& filter, const RecordedTrial& trial) {
+    return (errors_after(filter, trial, from_s).*figure)();
+  };
+}
+
 double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
   double ratio = kNoFigure;
   replay(filter, trial, [&ratio](const Estimate& truth, const WatchedFilter& now) {
@@ -142,6 +147,10 @@ double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& tria
     if (sigma_rad) ratio = heading_error_rad(truth, now.estimate()) / *sigma_rad;
   });
   return ratio;
+}
+
+double claimed_horizontal_m2(const Estimate& truth, const ErrorMatrix& P) {
+  return horizontal_covariance(truth.nav.r_e_m, P.block<3, 3>(kDr, kDr)).trace();
 }
 
 double heading_error_rad(const Estimate& truth, const Estimate& estimate) {

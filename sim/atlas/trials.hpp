@@ -7,18 +7,24 @@
 #include <vector>
 
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/scene.hpp"
+#include "sim/atlas/cells.hpp"
 #include "sim/atlas/watched_filter.hpp"
 #include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 
-/// A car-grade IMU on a trajectory, and a filter that takes fixes for what they are: white.
-/// @param initial  1 sigma at the start; by default that of a car that has just been aligned
-Scene car_grade_scene(
-    const std::string& name, const Trajectory& trajectory, double duration_s, double imu_rate_hz,
-    const InitialSigma& initial = {
-        .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5});
+/// What a car that has just been aligned knows, 1 sigma.
+inline constexpr InitialSigma kAlignedCar{
+    .tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
+
+/// An IMU, car-grade by default, over the whole seconds of a trajectory, and a filter that takes
+/// fixes for what they are: white.
+/// @param initial  1 sigma at the start
+Scene drive_scene(const Trajectory& trajectory, double imu_rate_hz,
+                  const InitialSigma& initial = kAlignedCar,
+                  const ImuErrorModel& imu = automotive_mems_model());
 
 /// Trials of a scene, seeds 1 to n, with the truth at every fix.
 std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n);
@@ -55,9 +61,15 @@ struct ErrorSums {
 /// Runs the filter over the whole trial. @returns the errors before fixes later than from_s
 ErrorSums errors_after(WatchedFilter& filter, const RecordedTrial& trial, double from_s);
 
+/// The figure of the errors before fixes later than from_s.
+Score score_after(double from_s, double (ErrorSums::*figure)() const);
+
 /// A figure: heading error over its claimed sigma just before the last fix. Infinite without an
 /// estimate or a claim.
 double final_heading_over_claim(WatchedFilter& filter, const RecordedTrial& trial);
+
+/// Sum of the variances north and east that a filter claims for its position.
+double claimed_horizontal_m2(const Estimate& truth, const ErrorMatrix& P);
 
 /// Turn about the local vertical by which the estimate's heading is off, rad, in 0 to pi.
 double heading_error_rad(const Estimate& truth, const Estimate& estimate);

@@ -2,8 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <array>
-
 #include "leeway/sim/sensors/true_increments.hpp"
 #include "sim/atlas/free_run.hpp"
 
@@ -27,9 +25,8 @@ std::vector<AtlasCell> vibration_cells(
     const std::function<Trajectory(double)>& motion,
     const std::function<double(const NavState&, const NavState&, double)>& figure,
     const AtlasOptions& options) {
-  constexpr std::array kSchemes{Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4};
-  std::vector<AtlasCell> cells;
-  for (const double frequency_hz : frequencies_hz(options)) {
+  return cells_over(frequencies_hz(options), [&](double frequency_hz) {
+    std::vector<AtlasCell> cells;
     Trajectory trajectory = motion(frequency_hz);
     trajectory.duration_s = kVibrationS;
     trajectory.period_s = 1.0;
@@ -37,15 +34,13 @@ std::vector<AtlasCell> vibration_cells(
     const NavState truth = truth_at(trajectory, kVibrationS).nav;
     for (const double rate_hz : imu_rates_hz(options)) {
       const TrueIncrements increments(trajectory, rate_hz, kVibrationS, 1);
-      for (const Scheme scheme : kSchemes) {
-        const FreeRun run = free_run(start, increments, {scheme});
-        cells.push_back({AtlasGroup::kStrapdown, std::string(name(scheme)),
-                         fmt::format("{:g} Hz at {:g} Hz", frequency_hz, rate_hz),
-                         figure(truth, run.nav, kVibrationS), run.reported});
-      }
+      append(cells,
+             free_runs({Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4},
+                       fmt::format("{:g} Hz at {:g} Hz", frequency_hz, rate_hz), start, increments,
+                       [&](const NavState& nav) { return figure(truth, nav, kVibrationS); }));
     }
-  }
-  return cells;
+    return cells;
+  });
 }
 
 }  // namespace leeway::sim

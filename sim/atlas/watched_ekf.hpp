@@ -15,45 +15,12 @@
 
 namespace leeway::sim {
 
-/// What can be seen of any filter by its estimate and covariance.
-class CommonDetectors {
- public:
-  explicit CommonDetectors(const ImuErrorModel& imu) : imu_(imu) {}
-
-  void note(const GnssFix& fix, const Estimate& estimate, const ErrorMatrix& P) {
-    if (!is_positive_definite(P)) reports_.insert("P not positive");
-    const bool at_rest =
-        fix.velocity && fix.velocity->v_e_mps.norm() < AlignmentConfig{}.rest_speed_mps;
-    const double heading_variance = heading_variance_rad2(estimate, P);
-    constexpr double kOneFilterRad = HeadingBank::kOneFilterRad;
-    if (heading_variance > kOneFilterRad * kOneFilterRad) reports_.insert("heading too open");
-    if (at_rest && rest_hides_heading(imu_, estimate, P)) reports_.insert("rest hides heading");
-  }
-
-  void note_unusable() { reports_.insert("fix unusable"); }
-  void note_gated() { reports_.insert("gated"); }
-  void note_noise_lost() { reports_.insert("noise lost"); }
-  void note_nis(double nis, int dof) { nis_.note(nis, dof); }
-
-  Reports reports() const {
-    Reports all = reports_;
-    if (nis_.is_high()) all.insert("NIS high");
-    if (nis_.is_low()) all.insert("NIS low");
-    return all;
-  }
-
- private:
-  ImuErrorModel imu_;
-  NisMonitor nis_{};
-  Reports reports_{};
-};
-
 /// BasicEkf over any kernel, with any error.
 template <class Kernel, class Error>
 class WatchedEkf final : public WatchedFilter {
  public:
   explicit WatchedEkf(const BasicEkf<Kernel, Error>& filter, const FixTrust& trust = {})
-      : filter_(filter), trust_(trust), detectors_(filter.inertial().config().imu) {}
+      : filter_(filter), trust_(trust) {}
 
   void predict(const ImuIncrement& inc) override {
     filter_.predict(inc);
@@ -62,24 +29,44 @@ class WatchedEkf final : public WatchedFilter {
 
   void update(const GnssFix& fix) override {
     const UpdateOutcome outcome = filter_.update(fix, trust_);
-    if (outcome.dof == 0) return detectors_.note_unusable();
-    const bool is_fused = outcome.outcome == UpdateOutcome::Outcome::kFused;
-    if (outcome.outcome == UpdateOutcome::Outcome::kGated) detectors_.note_gated();
-    if (outcome.covariance_positive) detectors_.note_nis(outcome.nis, outcome.dof);
+    note(outcome.dof == 0, "fix unusable");
+    if (outcome.dof == 0) return;
+    note(outcome.outcome == UpdateOutcome::Outcome::kGated, "gated");
+    if (outcome.covariance_positive) nis_.note(outcome.nis, outcome.dof);
     const ErrorMatrix P = filter_.covariance();
-    detectors_.note(fix, filter_.estimate(), P);
-    if (is_fused &&
-        noise_rounding<typename Kernel::Number>(P.diagonal(), noise_of_a_step()) > kNoiseLost) {
-      detectors_.note_noise_lost();
-    }
+    note_claim(fix, P);
+    note(outcome.outcome == UpdateOutcome::Outcome::kFused &&
+             noise_rounding<typename Kernel::Number>(P.diagonal(), noise_of_a_step()) > kNoiseLost,
+         "noise lost");
   }
 
   Estimate estimate() const override { return filter_.estimate(); }
   std::optional<ErrorMatrix> covariance() const override { return filter_.covariance(); }
-  Reports reported() const override { return detectors_.reports(); }
+
+  Reports reported() const override {
+    Reports all = reports_;
+    if (nis_.is_high()) all.insert("NIS high");
+    if (nis_.is_low()) all.insert("NIS low");
+    return all;
+  }
 
  private:
   static constexpr double kNoiseLost = 0.5;
+
+  void note(bool is_so, const char* what) {
+    if (is_so) reports_.insert(what);
+  }
+
+  void note_claim(const GnssFix& fix, const ErrorMatrix& P) {
+    constexpr double kOneFilterRad = HeadingBank::kOneFilterRad;
+    const bool at_rest =
+        fix.velocity && fix.velocity->v_e_mps.norm() < AlignmentConfig{}.rest_speed_mps;
+    const Estimate& estimate = filter_.estimate();
+    note(!is_positive_definite(P), "P not positive");
+    note(heading_variance_rad2(estimate, P) > kOneFilterRad * kOneFilterRad, "heading too open");
+    note(at_rest && rest_hides_heading(filter_.inertial().config().imu, estimate, P),
+         "rest hides heading");
+  }
 
   /// Half of what one propagation adds, as it is added before Phi and after.
   ErrorVector noise_of_a_step() const {
@@ -89,7 +76,8 @@ class WatchedEkf final : public WatchedFilter {
 
   BasicEkf<Kernel, Error> filter_;
   FixTrust trust_;
-  CommonDetectors detectors_;
+  NisMonitor nis_{};
+  Reports reports_{};
   double step_s_{0.0};  // of the newest increment
 };
 

@@ -72,13 +72,14 @@ class WatchedNavigator final : public WatchedFilter {
   Reports reports_{};
 };
 
-std::unique_ptr<WatchedFilter> made_watched(const ResetFilter& filter) {
+std::unique_ptr<WatchedFilter> watched(const ResetFilter& filter) {
   return std::make_unique<WatchedResetFilter>(filter);
 }
 
 template <class Kernel, class Error>
-std::unique_ptr<WatchedFilter> made_watched(const BasicEkf<Kernel, Error>& filter) {
-  return std::make_unique<WatchedEkf<Kernel, Error>>(filter);
+std::unique_ptr<WatchedFilter> watched(const BasicEkf<Kernel, Error>& filter,
+                                       const FixTrust& trust = {}) {
+  return std::make_unique<WatchedEkf<Kernel, Error>>(filter, trust);
 }
 
 AtlasGroup group_of(const Variant& variant) {
@@ -86,21 +87,6 @@ AtlasGroup group_of(const Variant& variant) {
   if (variant.estimator == Estimator::kInvariantEkf) return AtlasGroup::kInvariant;
   return variant.precision == Precision::kFloat ? AtlasGroup::kFloatKernel
                                                 : AtlasGroup::kDoubleKernel;
-}
-
-AtlasColumn navigator_column() {
-  return {AtlasGroup::kNavigator, "Navigator",
-          [](const EkfConfig& config, const TrialStart& start) {
-            Navigator navigator({.filter = config});
-            navigator.start(start.estimate, start.P);
-            return watched(navigator);
-          }};
-}
-
-AtlasColumn ekf_column() {
-  return {AtlasGroup::kEkf, "Ekf", [](const EkfConfig& config, const TrialStart& start) {
-            return watched(Ekf(config, start.estimate, start.P));
-          }};
 }
 
 std::vector<Variant> kernel_variants() {
@@ -132,12 +118,18 @@ std::string joined(const Reports& reports) {
   return text;
 }
 
-std::unique_ptr<WatchedFilter> watched(const Ekf& filter, const FixTrust& trust) {
-  return std::make_unique<WatchedEkf<SymmetricKernel<double>, AdditiveError>>(filter, trust);
+AtlasColumn navigator_column(const std::string& name, const TimingConfig& timing) {
+  return {AtlasGroup::kNavigator, name, [timing](const EkfConfig& config, const TrialStart& start) {
+            Navigator navigator({.filter = config, .timing = timing});
+            navigator.start(start.estimate, start.P);
+            return std::make_unique<WatchedNavigator>(navigator);
+          }};
 }
 
-std::unique_ptr<WatchedFilter> watched(const Navigator& navigator) {
-  return std::make_unique<WatchedNavigator>(navigator);
+AtlasColumn ekf_column(AtlasGroup group, const std::string& name, const FixTrust& trust) {
+  return {group, name, [trust](const EkfConfig& config, const TrialStart& start) {
+            return watched(Ekf(config, start.estimate, start.P), trust);
+          }};
 }
 
 AtlasColumn column_of(const Variant& variant) {
@@ -146,13 +138,18 @@ AtlasColumn column_of(const Variant& variant) {
   return {group_of(variant), both.substr(both.find(' ') + 1),
           [variant](const EkfConfig& config, const TrialStart& start) {
             return visit_variant_filter(variant, config, start,
-                                        [](const auto& filter) { return made_watched(filter); });
+                                        [](const auto& filter) { return watched(filter); });
           }};
 }
 
 std::vector<AtlasColumn> atlas_columns() {
   std::vector<AtlasColumn> columns{navigator_column(), ekf_column()};
   for (const Variant& variant : kernel_variants()) columns.push_back(column_of(variant));
+  return columns;
+}
+
+std::vector<AtlasColumn> claiming(std::vector<AtlasColumn> columns) {
+  std::erase_if(columns, [](const AtlasColumn& c) { return c.group == AtlasGroup::kReset; });
   return columns;
 }
 

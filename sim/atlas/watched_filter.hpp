@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "leeway/ekf/ekf.hpp"
-#include "leeway/model/heading.hpp"
 #include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/compare/variant.hpp"
@@ -60,10 +59,15 @@ std::vector<AtlasColumn> atlas_columns();
 /// not matter.
 std::vector<AtlasColumn> few_atlas_columns();
 
+/// Those of which the filter claims a covariance: all but ResetFilter.
+std::vector<AtlasColumn> claiming(std::vector<AtlasColumn> columns);
+
+AtlasColumn navigator_column(const std::string& name = "Navigator",
+                             const TimingConfig& timing = {});
+AtlasColumn ekf_column(AtlasGroup group = AtlasGroup::kEkf, const std::string& name = "Ekf",
+                       const FixTrust& trust = {});
+
 /// A BasicEkf or a ResetFilter.
 AtlasColumn column_of(const Variant& variant);
-
-std::unique_ptr<WatchedFilter> watched(const Ekf& filter, const FixTrust& trust = {});
-std::unique_ptr<WatchedFilter> watched(const Navigator& navigator);
 
 }  // namespace leeway::sim

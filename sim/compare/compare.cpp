@@ -10,7 +10,9 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/compare/pareto.hpp"
 #include "leeway/sim/trials/trial.hpp"
-#include "sim/compare/variant_cost.hpp"
+#include "lib/earth/field_walk.hpp"
+#include "sim/compare/filter_case.hpp"
+#include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -38,12 +40,11 @@ std::vector<Accuracy> accuracy_in(const TrialPlan& plan, const std::vector<Varia
 
 std::vector<Cost> costs_of(const TrialPlan& plan, const std::vector<Variant>& variants, int rounds,
                            const std::function<void(double)>& progress) {
-  GivenTrials given(plan.scene().first_seed);
-  std::vector<TimedRun> runs;
-  for (const FilterCase& one : cases_of(plan, variants)) {
-    runs.emplace_back([&given, one] { return timed_ns_per_s(one, given); });
+  std::vector<Cost> costs;
+  for (const std::vector<double>& times : times_ns_per_s(cases_of(plan, variants), rounds, progress)) {
+    costs.push_back(cost_of(times));
   }
-  return interleaved_costs(runs, rounds, progress);
+  return costs;
 }
 
 std::vector<int> fitting_dividers(const TrialPlan& plan) {
@@ -55,6 +56,15 @@ std::vector<int> fitting_dividers(const TrialPlan& plan) {
   return dividers;
 }
 
+bool is_lost(const Compared& c) {
+  const Consistency consistency = consistency_of(c.accuracy);
+  return consistency == Consistency::kDiverged || consistency == Consistency::kNotFinite;
+}
+
+bool is_cheaper(const Compared& a, const Compared& b) {
+  return a.cost.median_ns_per_s < b.cost.median_ns_per_s;
+}
+
 /// The cheapest of a list that err no more than the default does, by kSurvives.
 std::vector<Variant> survivors(const std::vector<Variant>& list,
                                const std::vector<Compared>& compared, double imu_rate_hz) {
@@ -64,20 +74,15 @@ std::vector<Variant> survivors(const std::vector<Variant>& list,
     });
   };
   const double limit_m = kSurvives * found(Variant{}).accuracy.figures.rms_horizontal_m;
-  std::vector<const Compared*> sorted;
+  std::vector<Compared> sorted;
   for (const Variant& variant : list) {
     const Compared& c = found(variant);
-    const Consistency consistency = consistency_of(c.accuracy);
-    const bool is_lost =
-        consistency == Consistency::kDiverged || consistency == Consistency::kNotFinite;
-    if (!is_lost && c.accuracy.figures.rms_horizontal_m <= limit_m) sorted.push_back(&c);
+    if (!is_lost(c) && c.accuracy.figures.rms_horizontal_m <= limit_m) sorted.push_back(c);
   }
-  std::sort(sorted.begin(), sorted.end(), [](const Compared* a, const Compared* b) {
-    return a->cost.median_ns_per_s < b->cost.median_ns_per_s;
-  });
+  std::sort(sorted.begin(), sorted.end(), is_cheaper);
   std::vector<Variant> result;
-  for (const Compared* c : sorted) {
-    if (result.size() < kSurvivors) result.push_back(c->variant);
+  for (const Compared& c : sorted) {
+    if (result.size() < kSurvivors) result.push_back(c.variant);
   }
   return result;
 }
@@ -110,28 +115,17 @@ std::vector<Compared> compared_of(const std::vector<Variant>& variants,
 
 /// Sorts by cost, then marks the front.
 void rank(std::vector<Compared>& variants) {
-  std::sort(variants.begin(), variants.end(), [](const Compared& a, const Compared& b) {
-    return a.cost.median_ns_per_s < b.cost.median_ns_per_s;
-  });
+  std::sort(variants.begin(), variants.end(), is_cheaper);
   std::vector<ParetoPoint> points;
   for (const Compared& c : variants) {
-    const Consistency consistency = consistency_of(c.accuracy);
-    const bool is_out =
-        consistency == Consistency::kNotFinite || consistency == Consistency::kDiverged;
     points.push_back(
         {c.cost.median_ns_per_s, c.cost.least_ns_per_s, c.cost.most_ns_per_s,
-         is_out ? std::numeric_limits<double>::quiet_NaN() : c.accuracy.figures.rms_horizontal_m});
+         is_lost(c) ? std::numeric_limits<double>::quiet_NaN() : c.accuracy.figures.rms_horizontal_m});
   }
   const auto dominated_by = dominators(points);
   for (std::size_t v = 0; v < variants.size(); ++v) {
     variants[v].dominated_by = dominated_by[v];
     variants[v].on_front = std::isfinite(points[v].error) && !dominated_by[v];
-  }
-}
-
-void validate(const CompareOptions& options) {
-  if (options.repeat < 1 || options.repeat > 1000) {
-    throw Error("compare: repeat is " + std::to_string(options.repeat) + ", must be 1 to 1000");
   }
 }
 
@@ -182,7 +176,7 @@ std::vector<Accuracy> accuracy_of(const std::vector<Variant>& variants, const Sc
 }
 
 Comparison compare(const Scene& scene, const CompareOptions& options) {
-  validate(options);
+  require("compare", "repeat", options.repeat, between(1.0, 1000.0));
   Comparison result{comparable(scene), {}, {}};
   const TrialPlan plan(result.scene, {}, options.threads);
   const double rate_hz = scene.imu_rate_hz;

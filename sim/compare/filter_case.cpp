@@ -1,48 +1,53 @@
 #include "sim/compare/filter_case.hpp"
 
-#include "leeway/model/process_noise.hpp"
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <utility>
+
 #include "leeway/sim/tools/parallel.hpp"
+#include "sim/compare/variant_run.hpp"
 #include "sim/trials/campaign_sums.hpp"
+#include "sim/trials/recorded_trial.hpp"
 
 namespace leeway::sim {
 namespace {
 
-CaseRun scored_run(const FilterCase& one, const RecordedTrial& trial, std::uint64_t seed) {
-  CaseRun run;
-  run.score.seed = seed;
-  const auto score = [&run](const Estimate& truth, const Estimate& estimate, const ErrorMatrix* P) {
-    if (run.score.finite) score_epoch(run.score, truth, estimate, P);
-    run.error_ne_m.emplace_back(position_error_n_m(truth, estimate).head<2>());
-  };
-  run_case(one, trial, score);
-  if (!run.score.finite) run.score.diverged = true;
-  return run;
-}
+/// The trials of one seed as cases are given them, each made when it is first asked for.
+class GivenTrials {
+ public:
+  explicit GivenTrials(std::uint64_t seed) : seed_(seed) {}
 
-}  // namespace
-
-const RecordedTrial& GivenTrials::to(const FilterCase& one) {
-  const Key key{one.plan, one.variant.imu_divider, one.knows_latency};
-  for (const auto& [made, trial] : trials_) {
-    if (made == key) return *trial;
+  /// Lives as long as this.
+  const RecordedTrial& to(const FilterCase& one) {
+    const Key key{one.plan, one.variant.imu_divider, one.knows_latency};
+    const auto found = trials_.find(key);
+    return found != trials_.end() ? found->second : trials_.emplace(key, made(one)).first->second;
   }
-  return *trials_.emplace_back(key, std::make_unique<RecordedTrial>(made(one))).second;
-}
 
-RecordedTrial GivenTrials::made(const FilterCase& one) {
-  FilterCase plainer = one;
-  if (one.variant.imu_divider > 1) {
-    plainer.variant.imu_divider = 1;
-    return at_lower_rate(to(plainer), one.variant.imu_divider);
-  }
-  if (!one.knows_latency) {
-    plainer.knows_latency = true;
-    return valid_at_arrival(to(plainer));
-  }
-  return record_trial(*one.plan, seed_);
-}
+ private:
+  using Key = std::tuple<const TrialPlan*, int, bool>;
 
-double run_case(const FilterCase& one, const RecordedTrial& trial, const ScoreObserver& observer) {
+  RecordedTrial made(const FilterCase& one) {
+    FilterCase plainer = one;
+    if (one.variant.imu_divider > 1) {
+      plainer.variant.imu_divider = 1;
+      return at_lower_rate(to(plainer), one.variant.imu_divider);
+    }
+    if (!one.knows_latency) {
+      plainer.knows_latency = true;
+      return valid_at_arrival(to(plainer));
+    }
+    return record_trial(*one.plan, seed_);
+  }
+
+  std::uint64_t seed_;
+  std::map<Key, RecordedTrial> trials_{};
+};
+
+double run_case(const FilterCase& one, const RecordedTrial& trial,
+                const ScoreObserver& observer = {}) {
   TrialStart start = trial.start;
   const BiasStates& biases = one.config.biases;
   for (const auto& [state, row] :
@@ -51,6 +56,20 @@ double run_case(const FilterCase& one, const RecordedTrial& trial, const ScoreOb
   }
   return run_variant(one.variant, one.config, start, trial, observer);
 }
+
+CaseRun scored_run(const FilterCase& one, const RecordedTrial& trial, std::uint64_t seed) {
+  CaseRun run;
+  run.score.seed = seed;
+  run_case(one, trial,
+           [&run](const Estimate& truth, const Estimate& estimate, const ErrorMatrix* P) {
+             if (run.score.finite) score_epoch(run.score, truth, estimate, P);
+             run.error_ne_m.emplace_back(position_error_n_m(truth, estimate).head<2>());
+           });
+  if (!run.score.finite) run.score.diverged = true;
+  return run;
+}
+
+}  // namespace
 
 std::vector<std::vector<CaseRun>> run_cases(const std::vector<FilterCase>& cases, int threads,
                                             const std::function<void(double)>& progress) {
@@ -72,6 +91,29 @@ std::vector<std::vector<CaseRun>> run_cases(const std::vector<FilterCase>& cases
       },
       threads);
   return runs;
+}
+
+std::vector<std::vector<double>> times_ns_per_s(const std::vector<FilterCase>& cases, int rounds,
+                                                const std::function<void(double)>& progress) {
+  std::vector<std::vector<double>> times(cases.size());
+  if (cases.empty()) return times;
+  GivenTrials given(cases.front().plan->scene().first_seed);
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+      const RecordedTrial& trial = given.to(cases[c]);
+      times[c].push_back(1e9 * run_case(cases[c], trial) / to_seconds(trial.imu.back().time));
+    }
+    if (progress) progress(static_cast<double>(round + 1) / rounds);
+  }
+  return times;
+}
+
+Cost cost_of(std::vector<double> ns_per_s) {
+  std::sort(ns_per_s.begin(), ns_per_s.end());
+  const std::size_t half = ns_per_s.size() / 2;
+  const double median =
+      ns_per_s.size() % 2 == 1 ? ns_per_s[half] : 0.5 * (ns_per_s[half - 1] + ns_per_s[half]);
+  return {median, ns_per_s.front(), ns_per_s.back()};
 }
 
 std::vector<double> radial_errors_m(const std::vector<CaseRun>& runs) {

@@ -1,19 +1,13 @@
 /// @file
-/// Filters side by side: every one on the same noise, trial by trial.
+/// Filters side by side: every one on the same noise, trial by trial, and what they cost.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <functional>
-#include <memory>
-#include <tuple>
-#include <utility>
 #include <vector>
 
-#include "leeway/sim/compare/variant.hpp"
-#include "leeway/sim/trials/campaign.hpp"
-#include "sim/compare/variant_run.hpp"
-#include "sim/trials/recorded_trial.hpp"
+#include "leeway/sim/compare/compare.hpp"
+#include "leeway/sim/trials/trial.hpp"
 
 namespace leeway::sim {
 
@@ -21,30 +15,10 @@ namespace leeway::sim {
 struct FilterCase {
   const TrialPlan* plan{};
   Variant variant{};
-  EkfConfig config{};        ///< all that the variant does not say
+  EkfConfig config{};        ///< all that the variant does not say; biases that are no states are
+                             ///< certain
   bool knows_latency{true};  ///< else fixes are taken for valid when they arrive
 };
-
-/// The trials of one seed as cases are given them, each made when it is first asked for.
-class GivenTrials {
- public:
-  explicit GivenTrials(std::uint64_t seed) : seed_(seed) {}
-
-  /// Lives as long as this.
-  const RecordedTrial& to(const FilterCase& one);
-
- private:
-  using Key = std::tuple<const TrialPlan*, int, bool>;
-
-  RecordedTrial made(const FilterCase& one);
-
-  std::uint64_t seed_;
-  std::vector<std::pair<Key, std::unique_ptr<RecordedTrial>>> trials_{};
-};
-
-/// As run_variant(); biases that are no states are certain.
-double run_case(const FilterCase& one, const RecordedTrial& trial,
-                const ScoreObserver& observer = {});
 
 /// One case in one trial.
 struct CaseRun {
@@ -56,6 +30,15 @@ struct CaseRun {
 /// of threads.
 std::vector<std::vector<CaseRun>> run_cases(const std::vector<FilterCase>& cases, int threads,
                                             const std::function<void(double)>& progress);
+
+/// Processor times of the cases in the first trial of their plan, all of one, in ns per second of
+/// IMU data: times[case][round]. Each round runs all in turn: what slows the machine for a while
+/// slows all alike.
+std::vector<std::vector<double>> times_ns_per_s(const std::vector<FilterCase>& cases, int rounds,
+                                                const std::function<void(double)>& progress = {});
+
+/// Median, least and most. @pre not empty
+Cost cost_of(std::vector<double> ns_per_s);
 
 /// Horizontal errors of the trials that are finite.
 std::vector<double> radial_errors_m(const std::vector<CaseRun>& runs);

@@ -9,7 +9,6 @@
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
-#include "sim/analysis/scene_covariance.hpp"
 #include "sim/trials/player.hpp"
 #include "sim/trials/recorded_trial.hpp"
 #include "sim/trials/trial_score.hpp"

@@ -9,6 +9,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/tools/parallel.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 
 namespace leeway::sim {
@@ -18,9 +19,7 @@ constexpr double kAgreesWithin = 0.2;        // of what was measured
 constexpr double kAgreesWithinLimit = 0.01;  // or of the limit
 
 void validate(const Scene& scene, const ReductionOptions& options) {
-  if (options.repeat < 1 || options.repeat > 1000) {
-    throw Error("reduce: repeat is " + std::to_string(options.repeat) + ", must be 1 to 1000");
-  }
+  require("reduce", "repeat", options.repeat, between(1.0, 1000.0));
   if (scene.gnss.latency_s >= scene.gnss.interval_s) {
     throw Error("reduce: latency_s of the fixes is " + std::to_string(scene.gnss.latency_s) +
                 ", must be less than their interval_s, " + std::to_string(scene.gnss.interval_s));

@@ -9,7 +9,6 @@
 #include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "sim/compare/filter_case.hpp"
-#include "sim/compare/variant_cost.hpp"
 
 namespace leeway::sim {
 

@@ -86,24 +86,21 @@ std::vector<MeasuredAccuracy> measured(const std::vector<FilterCase>& cases, int
 
 ModelCosts model_costs(const TrialPlan& plan, const std::vector<FilterModel>& models, int rounds,
                        const std::function<void(double)>& progress) {
-  GivenTrials given(plan.scene().first_seed);
-  const auto timed = [&](const FilterModel& model) {
-    return timed_ns_per_s(case_of(plan, model), given);
-  };
-  std::vector<std::vector<double>> savings(models.size());
-  std::vector<TimedRun> runs;
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    runs.emplace_back([&, m] {
-      // The first model beside each: what slows the machine slows both.
-      const double first_ns_per_s = timed(models.front());
-      const double ns_per_s = timed(models[m]);
-      savings[m].push_back(first_ns_per_s - ns_per_s);
-      return ns_per_s;
-    });
+  std::vector<FilterCase> cases;
+  for (const FilterModel& model : models) {
+    // The first model beside each: what slows the machine slows both.
+    cases.push_back(case_of(plan, models.front()));
+    cases.push_back(case_of(plan, model));
   }
-  ModelCosts result{interleaved_costs(runs, rounds, progress), {}};
-  for (std::vector<double>& of_model : savings) {
-    result.savings.push_back(cost_of(std::move(of_model)));
+  const auto times = times_ns_per_s(cases, rounds, progress);
+  ModelCosts result;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const std::vector<double>& of_first = times[2 * m];
+    const std::vector<double>& of_model = times[2 * m + 1];
+    std::vector<double> savings;
+    for (std::size_t k = 0; k < of_model.size(); ++k) savings.push_back(of_first[k] - of_model[k]);
+    result.costs.push_back(cost_of(of_model));
+    result.savings.push_back(cost_of(savings));
   }
   return result;
 }

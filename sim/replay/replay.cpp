@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/earth/error.hpp"
 #include "leeway/logs/solution_writer.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/replay/outage_branch.hpp"
 #include "sim/replay/reference.hpp"
 
@@ -215,10 +215,7 @@ ScalarColumns columns_of(const Aiding& aiding) {
 
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const ReplayObserver& observer) {
-  if (!(input.solution_rate_hz > 0.0 && input.solution_rate_hz <= 1e4)) {
-    throw Error("solution rate is " + std::to_string(input.solution_rate_hz) +
-                " Hz, must be above 0 and at most 10000 Hz");
-  }
+  require("replay", "solution_rate_hz", input.solution_rate_hz, positive_to(1e4));
   return Replay(input, config, observer).run();
 }
 

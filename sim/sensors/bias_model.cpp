@@ -1,8 +1,7 @@
 #include "leeway/sim/sensors/bias_model.hpp"
 
-#include <string>
-
 #include "leeway/earth/error.hpp"
+#include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -26,7 +25,7 @@ ImuErrorModel with_bias_model(const ImuErrorModel& model, BiasModel bias, double
         "the IMU model states an in-run drift of its own: a bias model (constant, "
         "gauss_markov) can be chosen for the Table 1 classes only");
   }
-  if (!(tau_s > 0.0)) throw Error("bias tau_s is " + std::to_string(tau_s) + ", must be > 0");
+  require("bias model", "tau_s", tau_s, kPositiveOrInfinite);
   if (bias == BiasModel::kConstant) return model;
   ImuErrorModel changed = model;
   changed.accelerometer = wandering(model.accelerometer, tau_s);

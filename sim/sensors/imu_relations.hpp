@@ -6,8 +6,6 @@
 #include <array>
 #include <cstddef>
 
-#include "leeway/sensors/imu_error_model.hpp"
-
 namespace leeway::sim {
 
 /// The quantities that relations are between.
@@ -21,8 +19,6 @@ enum class Stated : std::size_t {
 };
 inline constexpr std::size_t kStated = 6;
 
-double stated(const ImuErrorModel& model, Stated quantity);  ///< in SI
-
 /// The ratio of two quantities, in SI.
 struct Relation {
   Stated over{};
@@ -31,7 +27,10 @@ struct Relation {
   double high{};
 
   /// A quantity that is zero has no ratio.
-  bool allows(double over_si, double under_si) const;
+  bool allows(double over_si, double under_si) const {
+    if (over_si == 0.0 || under_si == 0.0) return true;
+    return over_si >= low * under_si && over_si <= high * under_si;
+  }
 };
 
 /// The bounds are those of the catalogue (imu_catalogue.hpp) and of [seed Table 1] with room: a

@@ -12,6 +12,7 @@
 #include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "leeway/sim/trials/trial_journal.hpp"
+#include "lib/earth/field_walk.hpp"
 #include "sim/trials/campaign_sums.hpp"
 #include "sim/trials/fingerprint.hpp"
 #include "sim/trials/seed_set.hpp"
@@ -23,21 +24,12 @@ constexpr int kMostThreads = 1024;
 constexpr int kMostTrials = 10'000'000;
 
 void validate(const Scene& scene, const CampaignOptions& options) {
-  if (scene.trials > kMostTrials) {
-    throw Error("campaign: trials is " + std::to_string(scene.trials) + ", must be at most " +
-                std::to_string(kMostTrials));
-  }
+  require("campaign", "trials", scene.trials, between(1.0, kMostTrials));
+  require("campaign", "threads", options.threads, between(0.0, kMostThreads));
+  require("campaign", "score_last_s", options.score_last_s.value_or(1.0), kPositive);
   if (scene.first_seed > std::numeric_limits<std::uint64_t>::max() - kMostTrials) {
     throw Error("campaign: first_seed is " + std::to_string(scene.first_seed) +
                 ", must leave room for the seeds of all trials below 2^64");
-  }
-  if (options.threads < 0 || options.threads > kMostThreads) {
-    throw Error("campaign: threads is " + std::to_string(options.threads) + ", must be 0 to " +
-                std::to_string(kMostThreads));
-  }
-  if (options.score_last_s && !(*options.score_last_s > 0.0)) {
-    throw Error("campaign: score_last_s is " + std::to_string(*options.score_last_s) +
-                ", must be > 0");
   }
 }
 
@@ -83,23 +75,17 @@ std::vector<SeedRange> resume(const Scene& scene, const CampaignOptions& options
   return finished.missing(all);
 }
 
-/// Where the trials of this process leave their scores.
-class Ledger {
- public:
-  Ledger(CampaignSums& sums, std::optional<TrialJournal>& journal)
-      : sums_(sums), journal_(journal) {}
-
-  void enter(const TrialScore& score) {
-    const std::lock_guard lock(mutex_);
-    if (journal_) journal_->append(score);
-    sums_.add(score);
-  }
-
- private:
-  std::mutex mutex_{};
-  CampaignSums& sums_;
-  std::optional<TrialJournal>& journal_;
-};
+/// The sums of all ranks together, at the first.
+CampaignSums of_all_ranks(CampaignSums sums, const Ranks& ranks) {
+  std::string bytes(sizeof sums, '\0');
+  std::memcpy(bytes.data(), &sums, sizeof sums);
+  ranks.to_first(bytes, [&sums](const std::string& others_bytes) {
+    CampaignSums others;
+    std::memcpy(&others, others_bytes.data(), sizeof others);
+    sums.add(others);
+  });
+  return sums;
+}
 
 /// Calls progress with what is finished, and how long the rest takes at the pace so far.
 std::function<void(std::size_t)> reporter(const CampaignOptions& options, const Ranks& ranks,
@@ -138,21 +124,20 @@ CampaignResult campaign(const Scene& scene, const CampaignOptions& options, cons
   const auto rank = static_cast<std::uint64_t>(ranks.rank());
   const auto count = static_cast<std::uint64_t>(ranks.count());
   const std::uint64_t mine = (todo.count() + count - 1 - rank) / count;
-  Ledger ledger(sums, journal);
+  std::mutex mutex;
   parallel_for(
-      mine, [&](std::size_t k) { ledger.enter(run_trial(plan, todo.seed(k * count + rank))); },
+      mine,
+      [&](std::size_t k) {
+        const TrialScore score = run_trial(plan, todo.seed(k * count + rank));
+        const std::lock_guard lock(mutex);
+        if (journal) journal->append(score);
+        sums.add(score);
+      },
       reporter(options, ranks, static_cast<double>(resumed) / static_cast<double>(count),
                static_cast<double>(mine)),
       threads);
 
-  std::string bytes(sizeof sums, '\0');
-  std::memcpy(bytes.data(), &sums, sizeof sums);
-  ranks.to_first(bytes, [&sums](const std::string& others_bytes) {
-    CampaignSums others;
-    std::memcpy(&others, others_bytes.data(), sizeof others);
-    sums.add(others);
-  });
-  CampaignResult result = result_of(sums);
+  CampaignResult result = result_of(of_all_ranks(sums, ranks));
   result.resumed = resumed;
   return result;
 }

@@ -1,10 +1,10 @@
 #include "leeway/sim/trials/trial.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cmath>
-#include <sstream>
 #include <string>
 
-#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/sim/scene/receiver.hpp"
@@ -21,16 +21,14 @@ namespace {
 
 const Scene& checked(const Scene& scene) {
   validate(scene);
-  std::ostringstream message;
   if (scene.gnss.interval_s * scene.imu_rate_hz < 1.0 - 1e-9) {
-    message << "gnss interval_s is " << scene.gnss.interval_s << ", must be at least that of the "
-            << "IMU, " << 1.0 / scene.imu_rate_hz << " s: raise imu_rate_hz";
-    refuse(message.str());
+    refuse(fmt::format("gnss interval_s is {:g}, must be at least that of the IMU, {:g} s: raise "
+                       "imu_rate_hz",
+                       scene.gnss.interval_s, 1.0 / scene.imu_rate_hz));
   }
   if (scene.duration_s < 2.0 * scene.gnss.interval_s) {
-    message << "duration_s is " << scene.duration_s << ", must be at least two GNSS intervals of "
-            << scene.gnss.interval_s << " s";
-    refuse(message.str());
+    refuse(fmt::format("duration_s is {:g}, must be at least two GNSS intervals of {:g} s",
+                       scene.duration_s, scene.gnss.interval_s));
   }
   return scene;
 }
@@ -60,13 +58,70 @@ class Trial {
     score_.seed = seed;
   }
 
-  TrialScore run();
+  TrialScore run() {
+    const auto divider = static_cast<std::size_t>(plan_.scene().imu_divider);
+    const auto while_finite = [this](auto&& call) {
+      return [this, call](const auto& event) {
+        if (score_.finite) call(event);
+      };
+    };
+    play(plan_.increments().size(), divider, plan_.fixes(),
+         while_finite([&](std::size_t k) { advance(k + 1 - divider, divider); }),
+         while_finite([&](const TrialPlan::Fix& fix) { take_fix(fix); }),
+         while_finite([&](const TrialPlan::Fix& fix) {
+           if (fix.scored) score();
+         }));
+    if (!score_.finite) score_.diverged = true;
+    return score_;
+  }
 
  private:
-  void advance(std::size_t first, std::size_t count);
-  void take_fix(const TrialPlan::Fix& fix);
-  void score();
-  void tell();
+  void advance(std::size_t first, std::size_t count) {
+    ImuIncrement inc;
+    for (std::size_t k = first; k < first + count; ++k) {
+      append(inc, sensor_.measure(plan_.increments()[k]));
+    }
+    filter_.predict(inc);
+    if (without_fix_) without_fix_->predict(inc);
+  }
+
+  void take_fix(const TrialPlan::Fix& fix) {
+    if (observer_) tell();
+    if (fix.scored) without_fix_ = filter_;
+    const UpdateOutcome outcome =
+        filter_.update(receiver_.fix_at(to_seconds(filter_.estimate().nav.time)));
+    if (outcome.outcome == UpdateOutcome::Outcome::kGated) ++score_.gated;
+    if (outcome.outcome == UpdateOutcome::Outcome::kFused) {
+      ++score_.fused;
+      if (fix.scored) {
+        score_.nis += outcome.nis;
+        score_.nis_dof += outcome.dof;
+      }
+    }
+    if (!outcome.covariance_positive || !filter_.estimate().nav.r_e_m.allFinite()) {
+      score_.finite = false;
+    }
+  }
+
+  void score() {
+    const Estimate& estimate = without_fix_->estimate();
+    Estimate truth;
+    truth.nav = truth_at(plan_.scene().trajectory, to_seconds(estimate.nav.time)).nav;
+    truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
+    const ErrorMatrix P = without_fix_->covariance();
+    score_epoch(score_, truth, estimate, &P);
+    without_fix_.reset();
+  }
+
+  void tell() {
+    const Estimate& estimate = filter_.estimate();
+    const double t_s = to_seconds(estimate.nav.time);
+    const Estimate truth{truth_at(plan_.scene().trajectory, t_s).nav, {}};
+    const Eigen::Matrix2d P_ne_m2 =
+        horizontal_covariance(estimate.nav.r_e_m, filter_.covariance().block<3, 3>(kDr, kDr));
+    observer_({t_s, position_error_n_m(truth, estimate).head<2>().norm(),
+               horizontal_error_m(HorizontalMetric::kR95, P_ne_m2)});
+  }
 
   const TrialPlan& plan_;
   const std::function<void(const TrialEpoch&)>& observer_;
@@ -76,71 +131,6 @@ class Trial {
   std::optional<Ekf> without_fix_{};  // the filter without the scored fix that is on its way
   TrialScore score_{};
 };
-
-TrialScore Trial::run() {
-  const auto divider = static_cast<std::size_t>(plan_.scene().imu_divider);
-  const auto while_finite = [this](auto&& call) {
-    return [this, call](const auto& event) {
-      if (score_.finite) call(event);
-    };
-  };
-  play(plan_.increments().size(), divider, plan_.fixes(),
-       while_finite([&](std::size_t k) { advance(k + 1 - divider, divider); }),
-       while_finite([&](const TrialPlan::Fix& fix) { take_fix(fix); }),
-       while_finite([&](const TrialPlan::Fix& fix) {
-         if (fix.scored) score();
-       }));
-  if (!score_.finite) score_.diverged = true;
-  return score_;
-}
-
-void Trial::advance(std::size_t first, std::size_t count) {
-  ImuIncrement inc;
-  for (std::size_t k = first; k < first + count; ++k) {
-    append(inc, sensor_.measure(plan_.increments()[k]));
-  }
-  filter_.predict(inc);
-  if (without_fix_) without_fix_->predict(inc);
-}
-
-void Trial::take_fix(const TrialPlan::Fix& fix) {
-  if (observer_) tell();
-  if (fix.scored) without_fix_ = filter_;
-  const UpdateOutcome report =
-      filter_.update(receiver_.fix_at(to_seconds(filter_.estimate().nav.time)));
-  if (report.outcome == UpdateOutcome::Outcome::kGated) ++score_.gated;
-  if (report.outcome == UpdateOutcome::Outcome::kFused) {
-    ++score_.fused;
-    if (fix.scored) {
-      score_.nis += report.nis;
-      score_.nis_dof += report.dof;
-    }
-  }
-  if (!report.covariance_positive || !filter_.estimate().nav.r_e_m.allFinite()) {
-    score_.finite = false;
-  }
-}
-
-void Trial::score() {
-  const Estimate& estimate = without_fix_->estimate();
-  Estimate truth;
-  truth.nav = truth_at(plan_.scene().trajectory, to_seconds(estimate.nav.time)).nav;
-  truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
-  const ErrorMatrix P = without_fix_->covariance();
-  score_epoch(score_, truth, estimate, &P);
-  without_fix_.reset();
-}
-
-void Trial::tell() {
-  const NavState& nav = filter_.estimate().nav;
-  const double t_s = to_seconds(nav.time);
-  const NavState truth = truth_at(plan_.scene().trajectory, t_s).nav;
-  const Eigen::Vector3d error_n_m =
-      ned_to_ecef(geodetic_from_ecef(truth.r_e_m)).transpose() * (nav.r_e_m - truth.r_e_m);
-  const Eigen::Matrix2d P_ne_m2 =
-      horizontal_covariance(nav.r_e_m, filter_.covariance().block<3, 3>(kDr, kDr));
-  observer_({t_s, error_n_m.head<2>().norm(), horizontal_error_m(HorizontalMetric::kR95, P_ne_m2)});
-}
 
 }  // namespace
 

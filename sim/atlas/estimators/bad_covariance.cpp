@@ -30,10 +30,6 @@ std::vector<BadCovariance> bad_covariances() {
       {"not positive definite", indefinite}, {"asymmetric", asymmetric}, {"huge", 1e12 * right}};
 }
 
-Scene short_drive() {
-  return car_grade_scene("one bad covariance", circle({.duration_s = 30.0}), 30.0, 20.0);
-}
-
 /// The same drive, its last fix with this covariance and far away.
 RecordedTrial with_bad_last(const RecordedTrial& trial, const Eigen::Matrix3d& R_e_m2) {
   RecordedTrial bad = trial;
@@ -69,21 +65,15 @@ double pulled_unchecked_m(const AtlasColumn& column, const EkfConfig& believed,
 }
 
 std::vector<AtlasCell> run_bad_covariance(const AtlasOptions& /*options*/) {
-  const Scene scene = short_drive();
+  const Scene scene = drive_scene(circle({.duration_s = 30.0}), 20.0);
   const auto trials = recorded_trials(scene, 1);
-  std::vector<AtlasCell> cells;
-  for (const BadCovariance& bad : bad_covariances()) {
+  return cells_over(bad_covariances(), [&](const BadCovariance& bad) {
     const RecordedTrial trial = with_bad_last(trials.front(), bad.R_e_m2);
-    for (AtlasCell& cell : scored(atlas_columns(), scene.filter, {trial}, bad.name, pulled_m)) {
-      cells.push_back(std::move(cell));
-    }
-    cells.push_back({AtlasGroup::kNotOffered,
-                     "R taken as it comes",
-                     bad.name,
-                     pulled_unchecked_m(column_of({}), scene.filter, trial),
-                     {}});
-  }
-  return cells;
+    auto cells = scored(atlas_columns(), scene.filter, {trial}, bad.name, pulled_m);
+    cells.push_back({AtlasGroup::kNotOffered, "R taken as it comes", bad.name,
+                     pulled_unchecked_m(column_of({}), scene.filter, trial)});
+    return cells;
+  });
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
@@ -13,17 +12,10 @@ constexpr double kCorrelatedSettledS = 120.0;
 
 /// Fixes every second whose error wanders over a minute.
 Scene wandering_fixes(double duration_s) {
-  Scene scene;
-  scene.name = "correlated fixes";
-  scene.duration_s = duration_s;
-  scene.trajectory = circle({.duration_s = duration_s});
-  scene.imu_rate_hz = 20.0;
-  set_imu(scene, "automotive-mems", automotive_mems_model());
+  Scene scene = drive_scene(circle({.duration_s = duration_s}), 20.0);
   scene.gnss.errors.position_sigma_n_m.setConstant(0.5);
   scene.gnss.errors.correlated_sigma_n_m.setConstant(2.5);
   scene.gnss.errors.correlation_time_s = kCorrelationS;
-  scene.initial =
-      InitialSigma{.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 2.5};
   return scene;
 }
 
@@ -42,16 +34,11 @@ double error_over_claim(WatchedFilter& filter, const RecordedTrial& trial) {
 std::vector<AtlasCell> run_correlated_fixes(const AtlasOptions& options) {
   const Scene scene = wandering_fixes(options.brief ? 300.0 : 600.0);
   const auto trials = recorded_trials(scene, options.brief ? 6 : 15);
-  std::vector<AtlasCell> cells;
-  for (const double correlation_s : {kCorrelationS, 0.0}) {
-    EkfConfig believed = scene.filter;
-    believed.gnss_correlation_s = correlation_s;
-    const char* condition = correlation_s > 0.0 ? "correlation told" : "taken for white";
-    for (AtlasCell& cell :
-         scored(few_atlas_columns(), believed, trials, condition, error_over_claim)) {
-      cells.push_back(std::move(cell));
-    }
-  }
+  EkfConfig told = scene.filter;
+  told.gnss_correlation_s = kCorrelationS;
+  auto cells = scored(few_atlas_columns(), told, trials, "correlation told", error_over_claim);
+  append(cells,
+         scored(few_atlas_columns(), scene.filter, trials, "taken for white", error_over_claim));
   return cells;
 }
 
@@ -62,7 +49,6 @@ AtlasScene correlated_fixes() {
           .key = "correlated-fixes",
           .title = "Correlated fixes taken for white",
           .figure = "position error over its claimed sigma",
-          .unit = "",
           .limits = {1.5, 2.5,
                      "of 1, by how much the mean over some minutes of a wandering error scatters; "
                      "beyond 2.5 sigma the claim of 95 % holds a third of the time"},

@@ -69,24 +69,17 @@ std::vector<AtlasCell> run_dead_row(const AtlasOptions& /*options*/) {
   // Short: what it adds to the variances is below the limit.
   const ImuIncrement inc = true_increment(static_trajectory(), 0.0, 0.01);
   std::vector<AtlasCell> cells;
-  for (const AtlasColumn& column : atlas_columns()) {
-    if (column.group == AtlasGroup::kReset) continue;  // it has no variances
+  for (const AtlasColumn& column : claiming(atlas_columns())) {
     const auto filter = column.make(EkfConfig{.imu = {}, .gnss_correlation_s = 0.0}, start);
     filter->predict(inc);
     filter->update(whole_fix(start, inc.time));
-    cells.push_back({column.group,
-                     column.name,
-                     {},
-                     worst_factor(*filter->covariance()),
+    cells.push_back({column.group, column.name, {}, worst_factor(*filter->covariance()),
                      joined(filter->reported())});
   }
-  for (const int row : {0, 5}) {
-    cells.push_back({AtlasGroup::kNotOffered,
-                     row == 0 ? "a position row unused" : "a velocity row unused",
-                     {},
-                     factor_without_row(start, row),
-                     {}});
-  }
+  cells.push_back({AtlasGroup::kNotOffered, "a position row unused", {},
+                   factor_without_row(start, 0)});
+  cells.push_back({AtlasGroup::kNotOffered, "a velocity row unused", {},
+                   factor_without_row(start, 5)});
   return cells;
 }
 
@@ -97,7 +90,6 @@ AtlasScene dead_row() {
           .key = "dead-row",
           .title = "A measurement row that does nothing",
           .figure = "worst factor between a variance after a fix and P R / (P + R)",
-          .unit = "",
           .limits = {1.001, 2.0,
                      "the closed form holds to rounding, also in float; a variance twice too large "
                      "is a row of which half was lost"},

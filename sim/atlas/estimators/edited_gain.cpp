@@ -1,7 +1,6 @@
 #include <memory>
 
 #include "filters/ekf/basic_ekf.hpp"
-#include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
@@ -10,8 +9,6 @@
 
 namespace leeway::sim::scenes {
 namespace {
-
-constexpr double kGainSettledS = 60.0;
 
 /// A kernel whose gain leaves attitude and gyro bias alone: what is done to keep a filter from
 /// learning what it cannot know.
@@ -61,40 +58,19 @@ AtlasColumn edited_column(const std::string& name) {
           }};
 }
 
-/// What the library offers for it: a Schmidt update.
-AtlasColumn held_column() {
-  return {AtlasGroup::kEkf, "Ekf with heading held",
-          [](const EkfConfig& config, const TrialStart& start) {
-            return watched(Ekf(config, start.estimate, start.P), {.held = Held::kHeadingAndTurn});
-          }};
-}
-
-Scene turning_drive() {
-  Scene scene;
-  scene.name = "a gain edited by hand";
-  scene.duration_s = 120.0;
-  scene.trajectory = circle({.duration_s = scene.duration_s});
-  scene.imu_rate_hz = 20.0;
-  set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 1e-3, .heading_rad = 5e-3, .velocity_mps = 0.1, .position_m = 2.5};
-  return scene;
-}
-
-double error_over_claim_of_all(WatchedFilter& filter, const RecordedTrial& trial) {
-  return errors_after(filter, trial, kGainSettledS).sigma_ratio();
-}
-
 std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {
-  const Scene scene = turning_drive();
-  std::vector<AtlasColumn> columns = few_atlas_columns();
-  std::erase_if(columns, [](const AtlasColumn& c) { return c.group == AtlasGroup::kReset; });
-  columns.push_back(held_column());
+  const Scene scene = drive_scene(
+      circle({.duration_s = 120.0}), 20.0,
+      {.tilt_rad = 1e-3, .heading_rad = 5e-3, .velocity_mps = 0.1, .position_m = 2.5},
+      imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
+  std::vector<AtlasColumn> columns = claiming(few_atlas_columns());
+  // What the library offers for it: a Schmidt update.
+  columns.push_back(
+      ekf_column(AtlasGroup::kEkf, "Ekf with heading held", {.held = Held::kHeadingAndTurn}));
   columns.push_back(edited_column<UpdateForm::kJoseph>("edited gain in Joseph's form"));
   columns.push_back(edited_column<UpdateForm::kSimple>("edited gain in the short form"));
   return scored(columns, scene.filter, recorded_trials(scene, options.brief ? 4 : 20), {},
-                error_over_claim_of_all);
+                score_after(60.0, &ErrorSums::sigma_ratio));
 }
 
 }  // namespace
@@ -104,7 +80,6 @@ AtlasScene edited_gain() {
           .key = "edited-gain",
           .title = "A gain edited by hand",
           .figure = "errors over claims: root of NEES over 15",
-          .unit = "",
           .limits = {1.3, 2.0,
                      "of 1, by how much few trials scatter; at 2 the claim of 95 % is one of 67 %"},
           .run = run_edited_gain};

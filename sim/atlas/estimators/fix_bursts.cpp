@@ -1,7 +1,6 @@
 #include <cmath>
 #include <string>
 
-#include "leeway/earth/earth.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
@@ -16,8 +15,7 @@ constexpr int kGaps = 4;
 /// Ten seconds of fixes, then minutes of none, four times.
 Scene bursts(double gap_s) {
   const double duration_s = kBurstsSettledS + kGaps * (gap_s + kBurstS);
-  Scene scene =
-      car_grade_scene("bursts of fixes", circle({.duration_s = duration_s}), duration_s, 20.0);
+  Scene scene = drive_scene(circle({.duration_s = duration_s}), 20.0);
   for (int k = 0; k < kGaps; ++k) {
     scene.gnss.outages.push_back({kBurstsSettledS + k * (gap_s + kBurstS), gap_s});
   }
@@ -35,30 +33,22 @@ double error_over_claim_after_gaps(WatchedFilter& filter, const RecordedTrial& t
     const bool is_first = t_s - last_fix_s > 0.5 * gap_s;
     last_fix_s = t_s;
     if (!is_first || !now.has_estimate()) return;
-    const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
     error_m2 += position_error_n_m(truth, now.estimate()).head<2>().squaredNorm();
-    if (const auto P = now.covariance()) {
-      const Eigen::Matrix3d P_n_m2 = C_ne * P->block<3, 3>(kDr, kDr) * C_ne.transpose();
-      claimed_m2 += P_n_m2.topLeftCorner<2, 2>().trace();
-    }
+    if (const auto P = now.covariance()) claimed_m2 += claimed_horizontal_m2(truth, *P);
   });
   return std::sqrt(error_m2 / claimed_m2);
 }
 
 std::vector<AtlasCell> run_fix_bursts(const AtlasOptions& options) {
-  std::vector<AtlasCell> cells;
-  for (const double gap_s : {60.0, 180.0}) {
+  return cells_over(std::vector{60.0, 180.0}, [&](double gap_s) {
     const Scene scene = bursts(gap_s);
-    const auto trials = recorded_trials(scene, options.brief ? 3 : 10);
-    const std::string condition = "gaps of " + std::to_string(std::lround(gap_s)) + " s";
-    const auto score = [gap_s](WatchedFilter& filter, const RecordedTrial& trial) {
-      return error_over_claim_after_gaps(filter, trial, gap_s);
-    };
-    for (AtlasCell& cell : scored(few_atlas_columns(), scene.filter, trials, condition, score)) {
-      cells.push_back(std::move(cell));
-    }
-  }
-  return cells;
+    return scored(few_atlas_columns(), scene.filter,
+                  recorded_trials(scene, options.brief ? 3 : 10),
+                  "gaps of " + std::to_string(std::lround(gap_s)) + " s",
+                  [gap_s](WatchedFilter& filter, const RecordedTrial& trial) {
+                    return error_over_claim_after_gaps(filter, trial, gap_s);
+                  });
+  });
 }
 
 }  // namespace
@@ -68,7 +58,6 @@ AtlasScene fix_bursts() {
           .key = "fix-bursts",
           .title = "Bursts of fixes with minutes between",
           .figure = "horizontal error over its claimed sigma at the end of gaps",
-          .unit = "",
           .limits = {1.5, 3.0,
                      "of 1, by how much a few dozen gaps scatter; at 3 a limit that is derived "
                      "from the claim is not kept"},

@@ -39,25 +39,12 @@ ErrorMatrix frozen_phi(const Estimate& start, double interval_s) {
 std::vector<AtlasCell> run_frozen_transition(const AtlasOptions& /*options*/) {
   std::vector<AtlasColumn> columns = atlas_columns();
   columns.push_back(column_of({.covariance_interval_s = 10.0}));
-  std::vector<AtlasCell> cells;
-  for (const double interval_s : {10.0, 60.0}) {
-    const std::string condition = std::to_string(std::lround(interval_s)) + " s";
+  return cells_over(std::vector{10.0, 60.0}, [&](double interval_s) {
     const LinearResponse response = body_bias_on_circle(interval_s);
-    const double truth_m = position_sigma_m(response.truth());
-    for (const AtlasColumn& column : columns) {
-      if (column.group == AtlasGroup::kReset) continue;  // it claims nothing
-      const double claimed_m = position_sigma_m(response.claim(column));
-      cells.push_back(
-          {column.group, column.name, condition, factor_between(claimed_m, truth_m), {}});
-    }
-    const ErrorMatrix frozen = response.carried(frozen_phi(response.start(), interval_s));
-    cells.push_back({AtlasGroup::kNotOffered,
-                     "Phi frozen at the fix",
-                     condition,
-                     factor_between(position_sigma_m(frozen), truth_m),
-                     {}});
-  }
-  return cells;
+    return response.compared(columns, std::to_string(std::lround(interval_s)) + " s",
+                             position_sigma_m, "Phi frozen at the fix",
+                             frozen_phi(response.start(), interval_s));
+  });
 }
 
 }  // namespace
@@ -67,7 +54,6 @@ AtlasScene frozen_transition() {
           .key = "frozen-transition",
           .title = "The transition matrix frozen over the fix interval",
           .figure = "claimed over true position error by a body-frame bias, as a factor",
-          .unit = "",
           .limits = {1.05, 1.5,
                      "a claim within 5 % is as good as the sigmas of the sensors are known; by "
                      "half, and the interval that it allows is wrong by a quarter"},

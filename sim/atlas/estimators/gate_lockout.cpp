@@ -5,14 +5,8 @@
 namespace leeway::sim::scenes {
 namespace {
 
-constexpr double kShockS = 60.0;       // for one second from here ..
-constexpr double kShockMps2 = 50.0;    // .. the accelerometers read so much too much
-constexpr double kRecoveredS = 120.0;  // when the filter should be right again
-
-Scene drive_with_shock() {
-  return car_grade_scene("a shock that the accelerometers take for motion",
-                         circle({.duration_s = 150.0}), 150.0, 50.0);
-}
+constexpr double kShockS = 60.0;     // for one second from here ..
+constexpr double kShockMps2 = 50.0;  // .. the accelerometers read so much too much
 
 void add_shock(RecordedTrial& trial) {
   for (ImuIncrement& inc : trial.imu) {
@@ -21,15 +15,12 @@ void add_shock(RecordedTrial& trial) {
   }
 }
 
-double error_afterwards_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  return errors_after(filter, trial, kRecoveredS).horizontal_rms_m();
-}
-
 std::vector<AtlasCell> run_gate_lockout(const AtlasOptions& options) {
-  const Scene scene = drive_with_shock();
+  const Scene scene = drive_scene(circle({.duration_s = 150.0}), 50.0);
   auto trials = recorded_trials(scene, options.brief ? 2 : 8);
   for (RecordedTrial& trial : trials) add_shock(trial);
-  return scored(few_atlas_columns(), scene.filter, trials, {}, error_afterwards_m);
+  return scored(few_atlas_columns(), scene.filter, trials, {},
+                score_after(kShockS + 60.0, &ErrorSums::horizontal_rms_m));
 }
 
 }  // namespace

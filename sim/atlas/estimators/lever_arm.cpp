@@ -5,14 +5,12 @@
 namespace leeway::sim::scenes {
 namespace {
 
-constexpr double kSpunUpS = 20.0;
 constexpr double kSpinFixM = 0.02;
 
 /// A vehicle that turns once in 6 s, its antenna 2 m ahead of the IMU and 1 m above.
 Scene spinning(double duration_s) {
-  Scene scene = car_grade_scene(
-      "spinning with a lever arm",
-      circle({.radius_m = 5.0, .speed_mps = 5.0, .duration_s = duration_s}), duration_s, 50.0,
+  Scene scene = drive_scene(
+      circle({.radius_m = 5.0, .speed_mps = 5.0, .duration_s = duration_s}), 50.0,
       {.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 0.1});
   scene.gnss.errors.position_sigma_n_m.setConstant(kSpinFixM);
   scene.gnss.errors.lever_arm_b_m = {2.0, 0.0, -1.0};
@@ -20,21 +18,14 @@ Scene spinning(double duration_s) {
   return scene;
 }
 
-double settled_error_m(WatchedFilter& filter, const RecordedTrial& trial) {
-  return errors_after(filter, trial, kSpunUpS).position_rms_m();
-}
-
 std::vector<AtlasCell> run_lever_arm(const AtlasOptions& options) {
   const Scene scene = spinning(options.brief ? 40.0 : 60.0);
   const auto trials = recorded_trials(scene, options.brief ? 2 : 8);
-  std::vector<AtlasCell> cells =
-      scored(few_atlas_columns(), scene.filter, trials, "known", settled_error_m);
+  const Score error_m = score_after(20.0, &ErrorSums::position_rms_m);
   EkfConfig ignorant = scene.filter;
   ignorant.lever_arm_b_m.setZero();
-  for (AtlasCell& cell :
-       scored(few_atlas_columns(), ignorant, trials, "ignored", settled_error_m)) {
-    cells.push_back(std::move(cell));
-  }
+  auto cells = scored(few_atlas_columns(), scene.filter, trials, "known", error_m);
+  append(cells, scored(few_atlas_columns(), ignorant, trials, "ignored", error_m));
   return cells;
 }
 

@@ -68,7 +68,7 @@ GnssFix fix_beside(const Estimate& estimate, const ErrorMatrix& P) {
 /// RMS over starts that differ a little: each rounds otherwise.
 AtlasCell cell_of(const AtlasColumn& column, const Trajectory& rest,
                   const std::vector<ImuIncrement>& imu, int starts) {
-  AtlasCell cell{column.group, column.name, {}, 0.0, {}};
+  AtlasCell cell{column.group, column.name};
   for (int k = 0; k < starts; ++k) {
     const double sigma_rad = (1.0 + 0.1 * k) * kRadPerDeg;
     const auto filter = column.make({.imu = noisy_gyro(), .gnss_correlation_s = 0.0},
@@ -100,7 +100,6 @@ AtlasScene lost_noise() {
           .key = "lost-noise",
           .title = "Process noise lost to rounding",
           .figure = "heading variance that is missing or invented, over what the gyro noise brings",
-          .unit = "",
           .limits = {0.1, 0.5,
                      "a tenth of the noise is 5 % of its sigma; without half of it, or with half "
                      "more, the noise that was configured is another one"},

@@ -6,12 +6,11 @@ namespace leeway::sim::scenes {
 namespace {
 
 Scene parked(double duration_s) {
-  Scene scene = car_grade_scene("parked with RTK fixes",
-                                static_trajectory({.duration_s = duration_s}), duration_s, 5.0,
-                                {.tilt_rad = 0.03,
-                                 .heading_rad = 10.0 * kRadPerDeg,
-                                 .velocity_mps = 0.05,
-                                 .position_m = 0.1});
+  Scene scene = drive_scene(static_trajectory({.duration_s = duration_s}), 5.0,
+                            {.tilt_rad = 0.03,
+                             .heading_rad = 10.0 * kRadPerDeg,
+                             .velocity_mps = 0.05,
+                             .position_m = 0.1});
   scene.gnss.errors.position_sigma_n_m.setConstant(0.01);
   scene.gnss.errors.velocity_sigma_n_mps.setConstant(0.01);
   return scene;
@@ -30,7 +29,6 @@ AtlasScene parked_rtk() {
           .key = "parked-rtk",
           .title = "Parked with RTK fixes: the heading's variance collapses",
           .figure = "heading error over its claimed sigma at the end",
-          .unit = "",
           .limits = {1.5, 3.0,
                      "of 1, by how much two dozen trials scatter; a claim of a third of the error "
                      "keeps a later filter from learning the heading"},

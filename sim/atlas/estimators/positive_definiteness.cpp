@@ -5,16 +5,15 @@
 namespace leeway::sim::scenes {
 namespace {
 
-constexpr double kVaguePriorM = 1000.0;
 constexpr double kPreciseFixM = 0.01;
 constexpr double kVagueSettledS = 30.0;
 
 /// At rest. The first fix shrinks the variance of the position by 1e10, which float has no digits
 /// for.
 Scene kilometre_prior() {
-  Scene scene = car_grade_scene(
-      "kilometre prior, centimetre fix", static_trajectory({.duration_s = 60.0}), 60.0, 20.0,
-      {.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = kVaguePriorM});
+  Scene scene = drive_scene(
+      static_trajectory({.duration_s = 60.0}), 20.0,
+      {.tilt_rad = 0.03, .heading_rad = 0.1, .velocity_mps = 0.1, .position_m = 1000.0});
   scene.gnss.errors.position_sigma_n_m.setConstant(kPreciseFixM);
   return scene;
 }
@@ -36,7 +35,6 @@ AtlasScene positive_definiteness() {
           .key = "positive-definiteness",
           .title = "A kilometre of prior, a centimetre of fix",
           .figure = "RMS position error before fixes, over the sigma of a fix",
-          .unit = "",
           .limits = {3.0, 100.0,
                      "a second after a fix the error is that of fix and filter together, within 3 "
                      "sigma of the fix; at 100 sigma the fixes are as good as unused"},

@@ -2,7 +2,6 @@
 #include <numbers>
 #include <string>
 
-#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
@@ -16,21 +15,17 @@ constexpr double kStaleFixM = 1.0;
 
 /// Five minutes of fixes, an hour of none, then 20 fixes.
 Scene hour_without_fixes() {
-  Scene scene;
-  scene.name = "an hour of coasting";
-  scene.duration_s = kSettleS + kCoastS + 20.0;
   // A lap a minute: the motion of one is all there is to compute.
   constexpr double kRadiusM = 200.0;
-  scene.trajectory = circle({.radius_m = kRadiusM,
-                             .speed_mps = 2.0 * std::numbers::pi * kRadiusM / 60.0,
-                             .duration_s = scene.duration_s});
-  scene.imu_rate_hz = 10.0;
-  set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kHigh));
+  Scene scene = drive_scene(
+      circle({.radius_m = kRadiusM,
+              .speed_mps = 2.0 * std::numbers::pi * kRadiusM / 60.0,
+              .duration_s = kSettleS + kCoastS + 20.0}),
+      10.0,
+      {.tilt_rad = 1e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = kStaleFixM},
+      imu_class_model(ImuClass::kTactical, RangeEnd::kHigh));
   scene.gnss.errors.position_sigma_n_m.setConstant(kStaleFixM);
   scene.gnss.outages = {{kSettleS, kCoastS}};
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial = InitialSigma{
-      .tilt_rad = 1e-3, .heading_rad = 0.02, .velocity_mps = 0.1, .position_m = kStaleFixM};
   return scene;
 }
 
@@ -47,17 +42,13 @@ double error_after_late_fix_m(WatchedFilter& filter, const RecordedTrial& trial,
 std::vector<AtlasCell> run_stale_covariance(const AtlasOptions& options) {
   const Scene scene = hour_without_fixes();
   const auto trials = recorded_trials(scene, options.brief ? 1 : 8);
-  std::vector<AtlasCell> cells;
-  for (const double after_s : {1.0, 19.0}) {
-    const std::string condition = std::to_string(std::lround(after_s)) + " s later";
-    const auto score = [after_s](WatchedFilter& filter, const RecordedTrial& trial) {
-      return error_after_late_fix_m(filter, trial, after_s);
-    };
-    for (AtlasCell& cell : scored(few_atlas_columns(), scene.filter, trials, condition, score)) {
-      cells.push_back(std::move(cell));
-    }
-  }
-  return cells;
+  return cells_over(std::vector{1.0, 19.0}, [&](double after_s) {
+    return scored(few_atlas_columns(), scene.filter, trials,
+                  std::to_string(std::lround(after_s)) + " s later",
+                  [after_s](WatchedFilter& filter, const RecordedTrial& trial) {
+                    return error_after_late_fix_m(filter, trial, after_s);
+                  });
+  });
 }
 
 }  // namespace

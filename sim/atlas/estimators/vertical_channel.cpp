@@ -30,26 +30,16 @@ ErrorMatrix phi_without_gradient(double duration_s) {
 }
 
 std::vector<AtlasCell> run_vertical_channel(const AtlasOptions& /*options*/) {
-  std::vector<AtlasCell> cells;
-  for (const double minutes : {5.0, 30.0}) {
+  return cells_over(std::vector{5.0, 30.0}, [](double minutes) {
     const double duration_s = 60.0 * minutes;
     const Trajectory rest = static_trajectory({.duration_s = duration_s});
     const LinearResponse response(rest, kVerticalRateHz, duration_s, {height_error(rest)});
     const Eigen::Vector3d axis_e = down_e_at(response.start().nav.r_e_m);
-    const std::string condition = std::to_string(std::lround(minutes)) + " min";
-    const double truth_m = height_sigma_m(response.truth(), axis_e);
-    const auto add = [&](AtlasGroup group, const std::string& variant, const ErrorMatrix& claim) {
-      const double factor = factor_between(height_sigma_m(claim, axis_e), truth_m);
-      cells.push_back({group, variant, condition, factor, {}});
-    };
-    for (const AtlasColumn& column : atlas_columns()) {
-      if (column.group != AtlasGroup::kReset)
-        add(column.group, column.name, response.claim(column));
-    }
-    add(AtlasGroup::kNotOffered, "F without gravity gradient",
-        response.carried(phi_without_gradient(duration_s)));
-  }
-  return cells;
+    return response.compared(
+        atlas_columns(), std::to_string(std::lround(minutes)) + " min",
+        [&axis_e](const ErrorMatrix& moment) { return height_sigma_m(moment, axis_e); },
+        "F without gravity gradient", phi_without_gradient(duration_s));
+  });
 }
 
 }  // namespace
@@ -60,7 +50,6 @@ AtlasScene vertical_channel() {
       .key = "vertical-channel",
       .title = "Height without fixes for half an hour",
       .figure = "claimed over true height error, as a factor",
-      .unit = "",
       .limits =
           {1.1, 2.0,
            "a claim within 10 % is as good as a sigma is known; one of half the error is no claim"},

@@ -12,22 +12,14 @@ namespace {
 constexpr double kUniformSigmaRad = 1.81;  // of a heading that is anywhere: pi / sqrt(3)
 constexpr double kScoredLastS = 20.0;
 
-Scene town_drive() {
-  return car_grade_scene(
-      "heading unknown", car_drive({.initial_rest_s = 2.0, .duration_s = 120.0}), 120.0, 25.0,
-      {.tilt_rad = 0.03, .heading_rad = 1e-3, .velocity_mps = 0.1, .position_m = 2.5});
-}
-
-/// The trial begun with a heading that is off by so much, and said to be anywhere.
-RecordedTrial with_heading_off(const RecordedTrial& trial, double off_rad) {
-  RecordedTrial off = trial;
+/// Begins a trial with a heading that is off by so much, and said to be anywhere.
+void start_with_heading_off(RecordedTrial& trial, double off_rad) {
   const Eigen::Vector3d down_e = down_e_at(trial.start.estimate.nav.r_e_m);
   ErrorVector turn = ErrorVector::Zero();
   turn.segment<3>(kPsi) = off_rad * down_e;
-  inject(off.start.estimate, turn);
-  off.start.P.block<3, 3>(kPsi, kPsi) +=
+  inject(trial.start.estimate, turn);
+  trial.start.P.block<3, 3>(kPsi, kPsi) +=
       kUniformSigmaRad * kUniformSigmaRad * down_e * down_e.transpose();
-  return off;
 }
 
 double late_heading_error_deg(WatchedFilter& filter, const RecordedTrial& trial) {
@@ -43,21 +35,16 @@ double late_heading_error_deg(WatchedFilter& filter, const RecordedTrial& trial)
 }
 
 std::vector<AtlasCell> run_wrong_heading(const AtlasOptions& options) {
-  const Scene scene = town_drive();
+  const Scene scene = drive_scene(
+      car_drive({.initial_rest_s = 2.0, .duration_s = 120.0}), 25.0,
+      {.tilt_rad = 0.03, .heading_rad = 1e-3, .velocity_mps = 0.1, .position_m = 2.5});
   const auto trials = recorded_trials(scene, options.brief ? 2 : 5);
-  std::vector<AtlasCell> cells;
-  for (const double off_deg : {0.0, 30.0, 90.0, 135.0, 180.0}) {
-    std::vector<RecordedTrial> off;
-    for (const RecordedTrial& trial : trials) {
-      off.push_back(with_heading_off(trial, off_deg * kRadPerDeg));
-    }
-    const std::string condition = std::to_string(std::lround(off_deg)) + " deg";
-    for (AtlasCell& cell :
-         scored(few_atlas_columns(), scene.filter, off, condition, late_heading_error_deg)) {
-      cells.push_back(std::move(cell));
-    }
-  }
-  return cells;
+  return cells_over(std::vector{0.0, 30.0, 90.0, 135.0, 180.0}, [&](double off_deg) {
+    std::vector<RecordedTrial> off = trials;
+    for (RecordedTrial& trial : off) start_with_heading_off(trial, off_deg * kRadPerDeg);
+    return scored(few_atlas_columns(), scene.filter, off,
+                  std::to_string(std::lround(off_deg)) + " deg", late_heading_error_deg);
+  });
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #include "leeway/earth/rotation.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
+#include "sim/atlas/cells.hpp"
 #include "sim/atlas/crossing.hpp"
 
 namespace leeway::sim::scenes {
@@ -14,11 +14,8 @@ Scene past_180_deg() {
 std::vector<AtlasCell> run_antimeridian(const AtlasOptions& options) {
   const Scene scene = past_180_deg();
   std::vector<AtlasCell> cells = crossed_without_fixes(scene, {});
-  cells.push_back(crossed_in_latitude_and_longitude(scene, {}, 0.0));
   cells.push_back(crossed_in_latitude_and_longitude(scene, {}, 0.1));
-  for (const AtlasCell& cell : crossed_with_fixes(scene, {}, options.brief ? 1 : 4)) {
-    cells.push_back(cell);
-  }
+  append(cells, crossed_with_fixes(scene, {}, options.brief ? 1 : 4));
   return cells;
 }
 

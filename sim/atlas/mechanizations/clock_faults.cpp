@@ -1,4 +1,3 @@
-#include "leeway/ekf/ekf.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
@@ -8,8 +7,7 @@ namespace {
 using std::chrono::hours;
 using std::chrono::seconds;
 
-constexpr double kClockDriveS = 120.0;
-constexpr double kClockScoredS = 30.0;
+constexpr double kClockScoredFromS = 90.0;
 constexpr Duration kWeekLength = hours{7 * 24};
 constexpr Time kFaultAt{seconds{30}};
 
@@ -35,12 +33,7 @@ Time rolled(Time t) {
   return of_week.time_since_epoch() >= kWeekLength ? of_week - kWeekLength : of_week;
 }
 
-struct ClockFault {
-  const char* condition;
-  Spoil spoil;
-};
-
-std::vector<ClockFault> faults() {
+std::vector<Fault> faults() {
   return {{"none", moved_times(same, same)},
           {"one IMU time 1000 s ahead", moved_times(one_wild, same)},
           {"all clocks jump an hour ahead", moved_times(hour_ahead, hour_ahead)},
@@ -62,29 +55,18 @@ void trust_times(RecordedTrial& trial) {
   }
 }
 
-AtlasColumn times_trusted() {
-  return {AtlasGroup::kNotOffered, "Ekf/times trusted",
-          [](const EkfConfig& config, const TrialStart& start) {
-            return watched(Ekf(config, start.estimate, start.P));
-          }};
-}
-
 std::vector<AtlasCell> run_clock_faults(const AtlasOptions& options) {
-  const Scene scene = town_drive(kClockDriveS);
+  const Scene scene = town_drive(120.0);
   const auto trials = recorded_trials(scene, options.brief ? 1 : 3);
-  const Score score = late_horizontal_rms_m(scene, kClockScoredS);
-  std::vector<AtlasCell> cells;
-  for (const ClockFault& fault : faults()) {
+  const Score score = score_after(kClockScoredFromS, &ErrorSums::horizontal_rms_m);
+  const AtlasColumn trusting = ekf_column(AtlasGroup::kNotOffered, "Ekf/times trusted");
+  return cells_over(faults(), [&](const Fault& fault) {
     const auto spoilt = spoiled(trials, fault.spoil);
-    const auto add = [&](const AtlasColumn& column, const std::vector<RecordedTrial>& inputs) {
-      for (const AtlasCell& cell : scored({column}, scene.filter, inputs, fault.condition, score)) {
-        cells.push_back(cell);
-      }
-    };
-    add(few_atlas_columns().front(), spoilt);
-    add(times_trusted(), spoiled(spoilt, trust_times));
-  }
-  return cells;
+    auto cells = scored({navigator_column()}, scene.filter, spoilt, fault.condition, score);
+    append(cells, scored({trusting}, scene.filter, spoiled(spoilt, trust_times), fault.condition,
+                         score));
+    return cells;
+  });
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <array>
 
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
@@ -21,26 +20,21 @@ Trajectory endless_eight(double duration_s) {
 }
 
 std::vector<AtlasCell> run_euler_hour(const AtlasOptions& options) {
-  constexpr std::array kSchemes{Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler,
-                                Scheme::kOneSample, Scheme::kTwoSample, Scheme::kRungeKutta4};
   const auto rates_hz =
       options.brief ? std::vector{10.0, 100.0} : std::vector{10.0, 20.0, 50.0, 100.0, 200.0};
   const Trajectory drive = endless_eight(3600.0);
   const NavState start = truth_at(drive, 0.0).nav;
-  std::vector<AtlasCell> cells;
-  for (const double rate_hz : rates_hz) {
+  return cells_over(rates_hz, [&](double rate_hz) {
     const TrueIncrements increments(drive, rate_hz, drive.duration_s, 1);
-    for (const Scheme scheme : kSchemes) {
-      double largest_m = 0.0;
-      const FreeRun run = free_run(start, increments, {scheme}, [&](const NavState& nav) {
-        const bool is_lap_done = nav.time.time_since_epoch() % kLap == Duration{};
-        if (is_lap_done) largest_m = std::max(largest_m, horizontal_error_m(start, nav));
-      });
-      cells.push_back({AtlasGroup::kStrapdown, std::string(name(scheme)),
-                       fmt::format("{:g} Hz", rate_hz), largest_m, run.reported});
-    }
-  }
-  return cells;
+    const auto error_m = [&start, largest_m = 0.0](const NavState& nav) mutable {
+      const bool is_lap_done = nav.time.time_since_epoch() % kLap == Duration{};
+      if (is_lap_done) largest_m = std::max(largest_m, horizontal_error_m(start, nav));
+      return largest_m;
+    };
+    return free_runs({Scheme::kExplicitEuler, Scheme::kSemiImplicitEuler, Scheme::kOneSample,
+                      Scheme::kTwoSample, Scheme::kRungeKutta4},
+                     fmt::format("{:g} Hz", rate_hz), start, increments, error_m);
+  });
 }
 
 }  // namespace

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/ekf/ekf_config.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
 namespace leeway::sim::scenes {
 namespace {
 
-constexpr double kOrderDriveS = 120.0;
 constexpr double kOrderScoredS = 60.0;
 
 /// A fix, and the increment after which it comes.
@@ -89,39 +87,24 @@ double delivered_rms_m(WatchedFilter& filter, const RecordedTrial& trial,
   return sums.horizontal_rms_m();
 }
 
-AtlasColumn patient_navigator() {
-  return {AtlasGroup::kNavigator, "Navigator/waits for 4 s",
-          [](const EkfConfig& config, const TrialStart& start) {
-            Navigator navigator({.filter = config, .timing = {.max_lateness_s = 4.0}});
-            navigator.start(start.estimate, start.P);
-            return watched(navigator);
-          }};
-}
-
-AtlasColumn used_on_arrival() {
-  return {AtlasGroup::kNotOffered, "Ekf/fixes used as they arrive",
-          [](const EkfConfig& config, const TrialStart& start) {
-            return watched(Ekf(config, start.estimate, start.P));
-          }};
-}
-
 std::vector<AtlasCell> run_fix_order(const AtlasOptions& options) {
-  const Scene scene = town_drive(kOrderDriveS);
+  const Scene scene = town_drive(120.0);
   const auto trials = recorded_trials(scene, options.brief ? 1 : 4);
-  std::vector<AtlasCell> cells;
-  for (const Order& order : orders()) {
-    for (const AtlasColumn& column :
-         {few_atlas_columns().front(), patient_navigator(), used_on_arrival()}) {
-      const bool on_arrival = column.group == AtlasGroup::kNotOffered;
-      const Score score = [&](WatchedFilter& filter, const RecordedTrial& trial) {
-        return delivered_rms_m(filter, trial, order.deliveries(trial), on_arrival);
-      };
-      for (const AtlasCell& cell : scored({column}, scene.filter, trials, order.condition, score)) {
-        cells.push_back(cell);
-      }
-    }
-  }
-  return cells;
+  return cells_over(orders(), [&](const Order& order) {
+    const auto run = [&](const std::vector<AtlasColumn>& columns, bool on_arrival) {
+      return scored(columns, scene.filter, trials, order.condition,
+                    [&](WatchedFilter& filter, const RecordedTrial& trial) {
+                      return delivered_rms_m(filter, trial, order.deliveries(trial), on_arrival);
+                    });
+    };
+    auto cells =
+        run({navigator_column(),
+             navigator_column("Navigator/waits for 4 s", {.max_lateness_s = 4.0})},
+            false);
+    append(cells,
+           run({ekf_column(AtlasGroup::kNotOffered, "Ekf/fixes used as they arrive")}, true));
+    return cells;
+  });
 }
 
 }  // namespace

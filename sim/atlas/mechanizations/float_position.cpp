@@ -47,26 +47,23 @@ double rounded_run_error_m(const std::vector<ImuIncrement>& increments, Rounding
 std::vector<AtlasCell> run_float_position(const AtlasOptions& options) {
   const auto rates_hz =
       options.brief ? std::vector{10.0, 100.0} : std::vector{1.0, 10.0, 50.0, 100.0, 400.0};
-  std::vector<AtlasCell> cells;
-  for (const double rate_hz : rates_hz) {
+  const NavState truth = truth_at(float_drive(), kFloatRunS).nav;
+  return cells_over(rates_hz, [&](double rate_hz) {
     const auto increments = true_increments(float_drive(), rate_hz, kFloatRunS);
     const std::string condition = fmt::format("{:g} Hz", rate_hz);
-    const FreeRun run = free_run(truth_at(float_drive(), 0.0).nav, increments, {});
-    cells.push_back({AtlasGroup::kStrapdown, "two-sample/double", condition,
-                     horizontal_error_m(truth_at(float_drive(), kFloatRunS).nav, run.nav),
-                     run.reported});
-    const auto rounded = [&](const char* variant, Rounding rounding) {
-      cells.push_back({AtlasGroup::kNotOffered,
-                       variant,
-                       condition,
-                       rounded_run_error_m(increments, rounding),
-                       {}});
+    std::vector<AtlasCell> cells{
+        free_run(Scheme::kTwoSample, condition, truth_at(float_drive(), 0.0).nav, increments,
+                 [&truth](const NavState& nav) { return horizontal_error_m(truth, nav); })};
+    cells.front().variant = "two-sample/double";
+    const auto add = [&](const char* variant, Rounding rounding) {
+      cells.push_back({AtlasGroup::kNotOffered, variant, condition,
+                       rounded_run_error_m(increments, rounding)});
     };
-    rounded("position/float", round_position);
-    rounded("position and velocity/float", round_position_and_velocity);
-    rounded("offset from a place nearby/float", round_offset);
-  }
-  return cells;
+    add("position/float", round_position);
+    add("position and velocity/float", round_position_and_velocity);
+    add("offset from a place nearby/float", round_offset);
+    return cells;
+  });
 }
 
 }  // namespace

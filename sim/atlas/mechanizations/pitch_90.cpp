@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "leeway/earth/earth.hpp"
-#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
@@ -89,51 +88,28 @@ double attitude_error_deg(const NavState& truth, const Eigen::Quaterniond& q_eb)
   return attitude_error_e_rad(truth, nav).norm() / kRadPerDeg;
 }
 
-std::vector<NavState> truth_along(const Trajectory& trajectory,
-                                  const std::vector<ImuIncrement>& increments) {
-  std::vector<NavState> truth;
-  for (const ImuIncrement& inc : increments) {
-    truth.push_back(truth_at(trajectory, to_seconds(inc.time)).nav);
-  }
-  return truth;
-}
-
-void add_free_runs(std::vector<AtlasCell>& cells, double lean_deg, double duration_s) {
+std::vector<AtlasCell> free_loops(double lean_deg, double duration_s) {
   const Trajectory loops = aerobatic_loops(lean_deg * kRadPerDeg, duration_s);
   const auto increments = true_increments(loops, kLoopRateHz, duration_s);
   const NavState start = truth_at(loops, 0.0).nav;
-  const std::vector<NavState> truth = truth_along(loops, increments);
   const std::string condition = fmt::format("up to {:g} deg", 90.0 - lean_deg);
-  for (const Scheme scheme : {Scheme::kExplicitEuler, Scheme::kOneSample, Scheme::kTwoSample}) {
-    double largest_deg = 0.0;
-    auto now = truth.begin();
-    const FreeRun run = free_run(start, increments, {scheme}, [&](const NavState& nav) {
-      largest_deg = std::max(largest_deg, attitude_error_deg(*now++, nav.q_eb));
-    });
-    cells.push_back(
-        {AtlasGroup::kStrapdown, std::string(name(scheme)), condition, largest_deg, run.reported});
+  std::vector<NavState> truth;
+  for (const ImuIncrement& inc : increments) {
+    truth.push_back(truth_at(loops, to_seconds(inc.time)).nav);
   }
+  auto cells = free_runs(
+      {Scheme::kExplicitEuler, Scheme::kOneSample, Scheme::kTwoSample}, condition, start,
+      increments, [largest_deg = 0.0, now = truth.begin()](const NavState& nav) mutable {
+        return largest_deg = std::max(largest_deg, attitude_error_deg(*now++, nav.q_eb));
+      });
   EulerAngleAttitude angles(loops.plane, start);
   double largest_deg = 0.0;
   for (std::size_t k = 0; k < increments.size(); ++k) {
     angles.push(increments[k]);
     largest_deg = std::max(largest_deg, attitude_error_deg(truth[k], angles.q_eb()));
   }
-  cells.push_back({AtlasGroup::kNotOffered, "Euler angles", condition, largest_deg, {}});
-}
-
-/// A tactical IMU, and a fix every second.
-Scene filtered_loops(double duration_s) {
-  Scene scene;
-  scene.name = "aerobatic loops";
-  scene.trajectory = aerobatic_loops(0.0, duration_s);
-  scene.duration_s = std::floor(duration_s);
-  scene.imu_rate_hz = kLoopRateHz;
-  set_imu(scene, "tactical", imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
-  scene.filter.gnss_correlation_s = 0.0;
-  scene.initial =
-      InitialSigma{.tilt_rad = 3e-3, .heading_rad = 0.01, .velocity_mps = 0.1, .position_m = 3.0};
-  return scene;
+  cells.push_back({AtlasGroup::kNotOffered, "Euler angles", condition, largest_deg});
+  return cells;
 }
 
 /// From the second loop on.
@@ -153,16 +129,15 @@ double attitude_rms_deg(WatchedFilter& filter, const RecordedTrial& trial) {
 
 std::vector<AtlasCell> run_pitch_90(const AtlasOptions& options) {
   const double duration_s = (options.brief ? 2.0 : 4.0) * kLoopS;
-  std::vector<AtlasCell> cells;
-  for (const double lean_deg : {0.0, 0.1, 1.0, 10.0}) {
-    add_free_runs(cells, lean_deg, duration_s);
-  }
-  const Scene scene = filtered_loops(duration_s);
-  for (const AtlasCell& cell :
-       scored(few_atlas_columns(), scene.filter, recorded_trials(scene, options.brief ? 1 : 4),
-              "with fixes; up to 90 deg", attitude_rms_deg)) {
-    cells.push_back(cell);
-  }
+  auto cells = cells_over(std::vector{0.0, 0.1, 1.0, 10.0},
+                          [&](double lean_deg) { return free_loops(lean_deg, duration_s); });
+  const Scene scene =
+      drive_scene(aerobatic_loops(0.0, duration_s), kLoopRateHz,
+                  {.tilt_rad = 3e-3, .heading_rad = 0.01, .velocity_mps = 0.1, .position_m = 3.0},
+                  imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
+  append(cells, scored(few_atlas_columns(), scene.filter,
+                       recorded_trials(scene, options.brief ? 1 : 4), "with fixes; up to 90 deg",
+                       attitude_rms_deg));
   return cells;
 }
 

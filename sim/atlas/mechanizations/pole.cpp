@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "leeway/earth/rotation.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
+#include "sim/atlas/cells.hpp"
 #include "sim/atlas/crossing.hpp"
 
 namespace leeway::sim::scenes {
@@ -21,18 +21,14 @@ Scene past_pole(double distance_m) {
 }
 
 std::vector<AtlasCell> run_pole(const AtlasOptions& options) {
-  std::vector<AtlasCell> cells;
-  for (const double distance_m : {0.0, 10.0, 1e3, 10e3}) {
+  return cells_over(std::vector{0.0, 10.0, 1e3, 10e3}, [&](double distance_m) {
     const Scene scene = past_pole(distance_m);
     const std::string condition = fmt::format("past it at {:g} m", distance_m);
-    for (const AtlasCell& cell : crossed_without_fixes(scene, condition)) cells.push_back(cell);
-    cells.push_back(crossed_in_latitude_and_longitude(scene, condition, 0.0));
-    if (distance_m > 0.0) continue;
-    for (const AtlasCell& cell : crossed_with_fixes(scene, condition, options.brief ? 1 : 4)) {
-      cells.push_back(cell);
-    }
-  }
-  return cells;
+    std::vector<AtlasCell> cells = crossed_without_fixes(scene, condition);
+    if (distance_m > 0.0) return cells;
+    append(cells, crossed_with_fixes(scene, condition, options.brief ? 1 : 4));
+    return cells;
+  });
 }
 
 }  // namespace

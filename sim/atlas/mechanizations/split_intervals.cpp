@@ -69,34 +69,32 @@ std::vector<ImuIncrement> times_ignored(std::vector<ImuIncrement> increments) {
   return increments;
 }
 
-double end_error_m(const std::vector<ImuIncrement>& increments, const NavState& nav) {
-  return (truth_at(moving_car(), to_seconds(increments.back().time)).nav.r_e_m - nav.r_e_m).norm();
-}
+/// A condition of the scene.
+struct Lengths {
+  const char* condition;
+  std::vector<ImuIncrement> increments;
+};
 
-void add_intervals(std::vector<AtlasCell>& cells, const std::string& condition,
-                   const std::vector<ImuIncrement>& increments) {
+std::vector<AtlasCell> run_lengths(const Lengths& lengths) {
   const NavState start = truth_at(moving_car(), 0.0).nav;
-  for (const Scheme scheme : {Scheme::kExplicitEuler, Scheme::kTrapezoid, Scheme::kOneSample,
-                              Scheme::kTwoSample, Scheme::kRungeKutta4}) {
-    const FreeRun run = free_run(start, increments, {scheme});
-    cells.push_back({AtlasGroup::kStrapdown, std::string(name(scheme)), condition,
-                     end_error_m(increments, run.nav), run.reported});
-  }
-  const FreeRun blind = free_run(start, times_ignored(increments), {});
-  cells.push_back({AtlasGroup::kNotOffered,
-                   "times ignored",
-                   condition,
-                   end_error_m(increments, blind.nav),
-                   {}});
+  const double end_s = to_seconds(lengths.increments.back().time);
+  const Eigen::Vector3d end_e_m = truth_at(moving_car(), end_s).nav.r_e_m;
+  const auto error_m = [&end_e_m](const NavState& nav) { return (end_e_m - nav.r_e_m).norm(); };
+  auto cells = free_runs({Scheme::kExplicitEuler, Scheme::kTrapezoid, Scheme::kOneSample,
+                          Scheme::kTwoSample, Scheme::kRungeKutta4},
+                         lengths.condition, start, lengths.increments, error_m);
+  const AtlasCell blind = free_run(Scheme::kTwoSample, lengths.condition, start,
+                                   times_ignored(lengths.increments), error_m);
+  cells.push_back({AtlasGroup::kNotOffered, "times ignored", blind.condition, blind.figure});
+  return cells;
 }
 
 std::vector<AtlasCell> run_split_intervals(const AtlasOptions&) {
-  std::vector<AtlasCell> cells;
-  add_intervals(cells, "equal", equal());
-  add_intervals(cells, "cut at fixes", cut_for_fixes());
-  add_intervals(cells, "8 and 12 ms", two_to_three());
-  add_intervals(cells, "7 to 13 ms at random", jittered());
-  return cells;
+  return cells_over(std::vector<Lengths>{{"equal", equal()},
+                                         {"cut at fixes", cut_for_fixes()},
+                                         {"8 and 12 ms", two_to_three()},
+                                         {"7 to 13 ms at random", jittered()}},
+                    run_lengths);
 }
 
 }  // namespace

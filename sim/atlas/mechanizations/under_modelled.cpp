@@ -1,14 +1,12 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
-#include "leeway/ekf/ekf_config.hpp"
 #include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
 namespace leeway::sim::scenes {
 namespace {
 
-constexpr double kUnderDriveS = 400.0;
 constexpr double kSettledAfterS = 100.0;
 constexpr std::chrono::seconds kFixEvery{10};  // from then on; each second before
 constexpr Time kVibratesFrom{std::chrono::seconds{150}};
@@ -19,11 +17,8 @@ double horizontal_over_claim(WatchedFilter& filter, const RecordedTrial& trial) 
   double epochs = 0.0;
   replay(filter, trial, [&](const Estimate& truth, const WatchedFilter& now) {
     if (to_seconds(truth.nav.time) <= kSettledAfterS || !now.has_estimate()) return;
-    const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.nav.r_e_m)).transpose();
-    const Eigen::Matrix3d P_n_m2 =
-        C_ne * now.covariance()->block<3, 3>(kDr, kDr) * C_ne.transpose();
     const Eigen::Vector3d error_n_m = position_error_n_m(truth, now.estimate());
-    squares += error_n_m.head<2>().squaredNorm() / P_n_m2.topLeftCorner<2, 2>().trace();
+    squares += error_n_m.head<2>().squaredNorm() / claimed_horizontal_m2(truth, *now.covariance());
     epochs += 1.0;
   });
   return std::sqrt(squares / epochs);
@@ -37,11 +32,6 @@ void thin_out_fixes(RecordedTrial& trial) {
   });
 }
 
-struct SensorFault {
-  const char* condition;
-  void (*spoil)(ImuIncrement&);
-};
-
 /// Rectification: what shakes a MEMS sensor shifts its mean, from the moment it shakes.
 void rectify(ImuIncrement& inc) {
   if (inc.time <= kVibratesFrom) return;
@@ -49,22 +39,15 @@ void rectify(ImuIncrement& inc) {
   inc.dtheta_b_rad += 0.3 * kRadPerDeg * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
 }
 
-constexpr SensorFault kSensorFaults[] = {
-    {"as modelled", [](ImuIncrement&) {}},
-    {"gyro scale 3 %", [](ImuIncrement& inc) { inc.dtheta_b_rad *= 1.03; }},
-    {"accelerometer scale 3 %", [](ImuIncrement& inc) { inc.dv_b_mps *= 1.03; }},
-    {"g-sensitivity 0.1 deg/s/g",
-     [](ImuIncrement& inc) {
-       inc.dtheta_b_rad += 0.1 * kRadPerDeg / kStandardGravityMps2 * inc.dv_b_mps;
-     }},
-    {"vibration shifts biases by 30 mg and 0.3 deg/s", rectify}};
-
-std::vector<AtlasColumn> claiming_columns() {
-  std::vector<AtlasColumn> columns;
-  for (const AtlasColumn& column : few_atlas_columns()) {
-    if (column.group != AtlasGroup::kReset) columns.push_back(column);
-  }
-  return columns;
+std::vector<Fault> sensor_faults() {
+  const auto imu = each_increment;
+  return {{"as modelled", [](RecordedTrial&) {}},
+          {"gyro scale 3 %", imu([](ImuIncrement& inc) { inc.dtheta_b_rad *= 1.03; })},
+          {"accelerometer scale 3 %", imu([](ImuIncrement& inc) { inc.dv_b_mps *= 1.03; })},
+          {"g-sensitivity 0.1 deg/s/g", imu([](ImuIncrement& inc) {
+             inc.dtheta_b_rad += 0.1 * kRadPerDeg / kStandardGravityMps2 * inc.dv_b_mps;
+           })},
+          {"vibration shifts biases by 30 mg and 0.3 deg/s", imu(rectify)}};
 }
 
 /// What a filter without such states can be told: more noise.
@@ -75,25 +58,17 @@ EkfConfig told_as_noise(EkfConfig config) {
 }
 
 std::vector<AtlasCell> run_under_modelled(const AtlasOptions& options) {
-  Scene scene = town_drive(kUnderDriveS);
+  Scene scene = town_drive(400.0);
   scene.imu_rate_hz = 50.0;
   const auto trials = spoiled(recorded_trials(scene, options.brief ? 1 : 4), thin_out_fixes);
-  std::vector<AtlasCell> cells;
-  const auto add = [&](const SensorFault& fault, const EkfConfig& believed,
-                       const std::string& condition) {
-    const auto faulty = spoiled(trials, [&fault](RecordedTrial& trial) {
-      for (ImuIncrement& inc : trial.imu) fault.spoil(inc);
-    });
-    for (const AtlasCell& cell :
-         scored(claiming_columns(), believed, faulty, condition, horizontal_over_claim)) {
-      cells.push_back(cell);
-    }
-  };
-  for (const SensorFault& fault : kSensorFaults) {
-    add(fault, scene.filter, fault.condition);
-    add(fault, told_as_noise(scene.filter), std::string(fault.condition) + "; told as noise");
-  }
-  return cells;
+  const auto columns = claiming(few_atlas_columns());
+  return cells_over(sensor_faults(), [&](const Fault& fault) {
+    const auto faulty = spoiled(trials, fault.spoil);
+    auto cells = scored(columns, scene.filter, faulty, fault.condition, horizontal_over_claim);
+    append(cells, scored(columns, told_as_noise(scene.filter), faulty,
+                         fault.condition + "; told as noise", horizontal_over_claim));
+    return cells;
+  });
 }
 
 }  // namespace
@@ -104,7 +79,6 @@ AtlasScene under_modelled() {
       .key = "under-modelled",
       .title = "Sensors that err otherwise than the filter believes",
       .figure = "RMS horizontal error before a fix, over the claimed sigma",
-      .unit = "",
       .limits = {1.5, 3.0, "an honest filter has 1; at 3 what it calls one in twenty is the rule"},
       .run = run_under_modelled};
 }

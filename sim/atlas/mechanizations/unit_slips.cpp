@@ -6,22 +6,6 @@
 namespace leeway::sim::scenes {
 namespace {
 
-constexpr double kSlipDriveS = 120.0;
-constexpr double kSlipScoredS = 30.0;
-
-/// Of every IMU increment.
-Spoil each_increment(void (*slip)(ImuIncrement&)) {
-  return [slip](RecordedTrial& trial) {
-    for (ImuIncrement& inc : trial.imu) slip(inc);
-  };
-}
-
-Spoil each_fix(void (*slip)(GnssFix&)) {
-  return [slip](RecordedTrial& trial) {
-    for (RecordedTrial::Fix& fix : trial.fixes) slip(fix.fix);
-  };
-}
-
 void scale(ImuIncrement& inc, double gyro, double accelerometer) {
   inc.dtheta_b_rad *= gyro;
   inc.dv_b_mps *= accelerometer;
@@ -58,12 +42,7 @@ void take_ms_for_s(RecordedTrial& trial) {
   }
 }
 
-struct Slip {
-  const char* condition;
-  Spoil spoil;
-};
-
-std::vector<Slip> slips() {
+std::vector<Fault> slips() {
   constexpr double kInterval = 0.01;
   const auto imu = each_increment;
   return {
@@ -86,17 +65,12 @@ std::vector<Slip> slips() {
 }
 
 std::vector<AtlasCell> run_unit_slips(const AtlasOptions& options) {
-  const Scene scene = town_drive(kSlipDriveS);
+  const Scene scene = town_drive(120.0);
   const auto trials = recorded_trials(scene, options.brief ? 1 : 3);
-  std::vector<AtlasCell> cells;
-  for (const Slip& slip : slips()) {
-    for (const AtlasCell& cell :
-         scored(few_atlas_columns(), scene.filter, spoiled(trials, slip.spoil), slip.condition,
-                late_horizontal_rms_m(scene, kSlipScoredS))) {
-      cells.push_back(cell);
-    }
-  }
-  return cells;
+  return cells_over(slips(), [&](const Fault& slip) {
+    return scored(few_atlas_columns(), scene.filter, spoiled(trials, slip.spoil), slip.condition,
+                  score_after(90.0, &ErrorSums::horizontal_rms_m));
+  });
 }
 
 }  // namespace

@@ -13,6 +13,14 @@
 namespace leeway::sim {
 namespace {
 
+double stated(const ImuErrorModel& model, Stated quantity) {
+  const TriadErrorModel& a = model.accelerometer;
+  const TriadErrorModel& g = model.gyro;
+  const double in_order[] = {a.bias_sigma, a.in_run.sigma, a.noise_density,
+                             g.bias_sigma, g.in_run.sigma, g.noise_density};
+  return in_order[static_cast<std::size_t>(quantity)];
+}
+
 /// Whether every relation holds, and would hold with bounds that are that factor narrower.
 bool holds(const ImuErrorModel& model, double room) {
   for (Relation relation : kRelations) {
