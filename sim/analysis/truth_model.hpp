@@ -3,7 +3,10 @@
 /// covariance_analysis.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -25,26 +28,129 @@ class TruthModel {
   /// @param filters      what they take for the noise
   /// @param by_source    keeps the sources apart; else they share one covariance
   TruthModel(const Scene& scene, const ErrorMatrix& initial_nav,
-             const std::array<ProcessNoise, kFilters>& filters, bool by_source);
+             const std::array<ProcessNoise, kFilters>& filters, bool by_source)
+      : filters_(filters), by_source_(by_source), parameter_moments_(parameter_moments(scene.imu)) {
+    of(ErrorSource::kInitial).add_shared(0, initial_nav);
+    const ImuErrorModel& believed = scene.filter.imu;
+    add_triad(scene.imu.accelerometer, kBa, believed.accelerometer.bias);
+    add_triad(scene.imu.gyro, kBg, believed.gyro.bias);
+    const GnssErrorModel& gnss = scene.gnss.errors;
+    of(ErrorSource::kGnssPosition).fix_variance.template head<3>() +=
+        gnss.position_sigma_n_m.cwiseAbs2();
+    of(ErrorSource::kGnssVelocity).fix_variance.template tail<3>() +=
+        gnss.velocity_sigma_n_mps.cwiseAbs2();
+    if (gnss.correlated_sigma_n_m.isZero(0.0)) return;
+    MarkovSource<kFilters> source;
+    source.process.tau_s = gnss.correlation_time_s;  // its drive never enters the error
+    MarkovStart start;
+    start.variance = gnss.correlated_sigma_n_m.cwiseAbs2();
+    of(ErrorSource::kGnssCorrelated).add_process(source, start);
+  }
 
   /// Whether the filter knows everything that goes on: its own covariance is then the true one.
   bool is_known_to(const ErrorMoment<kFilters>& filter_P,
-                   const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const;
+                   const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const {
+    const SourceCovariance<kFilters>& all = sources_.front().second;
+    if (by_source_ || all.has_processes() || !parameter_moments_.empty()) return false;
+    return all.P.isApprox(filter_P, 1e-12) &&
+           noise_variance(all.noise, 1.0) == noise_variance(filters_.front(), 1.0) &&
+           all.fix_variance.isApprox(filter_fix_variance, 1e-12);
+  }
 
-  void propagate(const Leg& leg);
+  void propagate(const Leg& leg) {
+    for (auto& [name, source] : sources_) source.propagate(leg);
+    if (!parameter_moments_.empty()) parameters_.propagate(leg);
+  }
+
   /// @param gains  on the rows one after the other: each sees the errors that the last one left
-  void update(const FixRows& fix, const FixGains<kFilters>& gains);
-  ErrorMoment<kFilters> covariance() const;
+  void update(const FixRows& fix, const FixGains<kFilters>& gains) {
+    for (int row = 0; row < fix.H.rows(); ++row) {
+      RowGain<kFilters> gain{row, fix.per_sigma(row), fix.H.row(row).transpose()};
+      for (int i = 0; i < kFilters; ++i) {
+        const int first = i * kErrorStates;
+        gain.K.col(i).template segment<kErrorStates>(first) =
+            gains.col(row).template segment<kErrorStates>(first);
+      }
+      for (auto& [name, source] : sources_) source.update(gain);
+      if (!parameter_moments_.empty()) parameters_.update(gain);
+    }
+  }
+
+  ErrorMoment<kFilters> covariance() const {
+    ErrorMoment<kFilters> sum = ErrorMoment<kFilters>::Zero();
+    for (const auto& [name, source] : sources_) sum += source.P;
+    if (parameter_moments_.empty()) return sum;
+    ParameterMoment moment = ParameterMoment::Zero();
+    for (const auto& [name, own] : parameter_moments_) moment += own;
+    return sum + parameters_.covariance(moment);
+  }
 
   /// Of the first filter.
-  ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const;
+  ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const {
+    ErrorBudget error_budget;
+    const auto add = [&](ErrorSource name, const ErrorMoment<kFilters>& P) {
+      error_budget.push_back({name, C_en.transpose() * P.template block<3, 3>(kDr, kDr) * C_en});
+    };
+    for (const auto& [name, source] : sources_) add(name, source.P);
+    for (const auto& [name, moment] : parameter_moments_) add(name, parameters_.covariance(moment));
+    return error_budget;
+  }
 
  private:
-  void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias);
-  void add_turn_on(const MarkovStart& turn_on, int bias_row, SourceCovariance<kFilters>& bias);
-  void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance<kFilters>& drift);
-  bool all_take_bias_for(double tau_s, int bias_row) const;
-  SourceCovariance<kFilters>& of(ErrorSource source);
+  SourceCovariance<kFilters>& of(ErrorSource source) {
+    if (sources_.empty() || by_source_) {
+      sources_.emplace_back(source, SourceCovariance<kFilters>(filters_));
+    }
+    return sources_.back().second;
+  }
+
+  bool all_take_bias_for(double tau_s, int bias_row) const {
+    return std::all_of(filters_.begin(), filters_.end(), [&](const ProcessNoise& filter) {
+      return (bias_row == kBa ? filter.tau_a_s : filter.tau_g_s) == tau_s;
+    });
+  }
+
+  void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias) {
+    const auto of_triad = [&](ErrorSource accelerometer,
+                              ErrorSource gyro) -> SourceCovariance<kFilters>& {
+      return of(bias_row == kBa ? accelerometer : gyro);
+    };
+    ProcessNoise& noise = of_triad(ErrorSource::kAccelerometerNoise, ErrorSource::kGyroNoise).noise;
+    (bias_row == kBa ? noise.velocity_m2_per_s3 : noise.attitude_rad2_per_s) +=
+        triad.noise_density * triad.noise_density;
+    MarkovStart turn_on;
+    turn_on.variance.setConstant(triad.bias_sigma * triad.bias_sigma);
+    turn_on.mean = triad.bias;
+    turn_on.known = known_bias;
+    add_turn_on(turn_on, bias_row,
+                of_triad(ErrorSource::kAccelerometerBias, ErrorSource::kGyroBias));
+    if (triad.in_run.sigma == 0.0) return;
+    add_drift(triad.in_run, bias_row,
+              of_triad(ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift));
+  }
+
+  void add_turn_on(const MarkovStart& turn_on, int bias_row, SourceCovariance<kFilters>& bias) {
+    if (all_take_bias_for(std::numeric_limits<double>::infinity(), bias_row)) {
+      // The states are as constant as the bias: nothing else need be remembered.
+      bias.add_shared(bias_row, turn_on.error_moment());
+    } else if (!turn_on.variance.isZero(0.0) || !turn_on.mean.isZero(0.0) ||
+               !turn_on.known.isZero(0.0)) {
+      bias.add_process({bias_row, GaussMarkov{}}, turn_on);
+    }
+  }
+
+  void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance<kFilters>& drift) {
+    MarkovStart start;
+    start.variance.setConstant(in_run.sigma * in_run.sigma);
+    if (kFilters > 1 || !all_take_bias_for(in_run.tau_s, bias_row)) {
+      drift.add_process({bias_row, in_run}, start);
+      return;
+    }
+    // The filter's own state is the drift.
+    drift.add_shared(bias_row, start.error_moment());
+    const double drive = std::isinf(in_run.tau_s) ? 0.0 : 2.0 * start.variance.x() / in_run.tau_s;
+    (bias_row == kBa ? drift.noise.b_a_m2_per_s5 : drift.noise.b_g_rad2_per_s3) += drive;
+  }
 
   std::array<ProcessNoise, kFilters> filters_;
   bool by_source_;

@@ -41,7 +41,7 @@ std::vector<Accuracy> accuracy_in(const TrialPlan& plan, const std::vector<Varia
 std::vector<Cost> costs_of(const TrialPlan& plan, const std::vector<Variant>& variants, int rounds,
                            const std::function<void(double)>& progress) {
   std::vector<Cost> costs;
-  for (const std::vector<double>& times : times_ns_per_s(cases_of(plan, variants), rounds, progress)) {
+  for (const auto& times : times_ns_per_s(cases_of(plan, variants), rounds, progress)) {
     costs.push_back(cost_of(times));
   }
   return costs;
@@ -118,9 +118,9 @@ void rank(std::vector<Compared>& variants) {
   std::sort(variants.begin(), variants.end(), is_cheaper);
   std::vector<ParetoPoint> points;
   for (const Compared& c : variants) {
-    points.push_back(
-        {c.cost.median_ns_per_s, c.cost.least_ns_per_s, c.cost.most_ns_per_s,
-         is_lost(c) ? std::numeric_limits<double>::quiet_NaN() : c.accuracy.figures.rms_horizontal_m});
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    points.push_back({c.cost.median_ns_per_s, c.cost.least_ns_per_s, c.cost.most_ns_per_s,
+                      is_lost(c) ? kNone : c.accuracy.figures.rms_horizontal_m});
   }
   const auto dominated_by = dominators(points);
   for (std::size_t v = 0; v < variants.size(); ++v) {

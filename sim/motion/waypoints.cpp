@@ -63,60 +63,56 @@ class Route {
   LocalMotion motion(const TangentPlane& plane, double t_s) const;
 
  private:
-  static std::vector<double> corner_speeds(const WaypointParameters& p);
-  std::vector<Corner> corners(const WaypointParameters& p) const;
-  std::vector<SpeedNode> nodes(const WaypointParameters& p) const;
+  /// The slower of the speeds before and after a corner, and no faster than its radius allows.
+  static std::vector<double> corner_speeds(const WaypointParameters& p) {
+    const std::size_t count = p.waypoints.size();
+    std::vector<double> speeds_mps;
+    for (std::size_t k = 0; k < count; ++k) {
+      double speed_mps = p.waypoints[k].speed_mps;
+      if (p.loop || k > 0) {
+        speed_mps = std::min(speed_mps, p.waypoints[(k + count - 1) % count].speed_mps);
+      }
+      if (p.turn_radius_m) {
+        speed_mps = std::min(speed_mps, std::sqrt(p.lateral_acceleration_mps2 * *p.turn_radius_m));
+      }
+      speeds_mps.push_back(speed_mps);
+    }
+    return speeds_mps;
+  }
+
+  std::vector<Corner> corners(const WaypointParameters& p) const {
+    std::vector<Corner> corners;
+    for (std::size_t k = 0; k < p.waypoints.size(); ++k) {
+      const double v_mps = corner_speeds_mps_[k];
+      corners.push_back({p.waypoints[k].position,
+                         p.turn_radius_m.value_or(v_mps * v_mps / p.lateral_acceleration_mps2),
+                         v_mps * (p.banks ? kShortestBankedTurnS : kShortestTurnS)});
+    }
+    return corners;
+  }
+
+  /// Two for each corner: where it begins to turn, which is where it stops, and where that ends.
+  std::vector<SpeedNode> nodes(const WaypointParameters& p) const {
+    const std::vector<TurnSpan>& turns = path_.turns();
+    std::vector<SpeedNode> nodes;
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      const std::size_t corner = k % p.waypoints.size();
+      const Waypoint& waypoint = p.waypoints[corner];
+      const double v_mps = corner_speeds_mps_[corner];
+      const bool turns_here = turns[k].end_m > turns[k].start_m;
+      nodes.push_back({turns[k].start_m, waypoint.stop_s ? 0.0 : v_mps,
+                       turns_here ? v_mps : waypoint.speed_mps, waypoint.stop_s.value_or(0.0)});
+      if (p.loop && k + 1 == turns.size()) break;
+      if (turns_here) nodes.push_back({turns[k].end_m, v_mps, waypoint.speed_mps, 0.0});
+    }
+    return nodes;
+  }
 
   std::vector<double> corner_speeds_mps_;  // at which each corner is turned
   EllipsoidPath path_;
   SpeedProfile profile_;
   bool banks_;
 };
-
-/// The slower of the speeds before and after a corner, and no faster than its radius allows.
-std::vector<double> Route::corner_speeds(const WaypointParameters& p) {
-  const std::size_t count = p.waypoints.size();
-  std::vector<double> speeds_mps;
-  for (std::size_t k = 0; k < count; ++k) {
-    double speed_mps = p.waypoints[k].speed_mps;
-    if (p.loop || k > 0) {
-      speed_mps = std::min(speed_mps, p.waypoints[(k + count - 1) % count].speed_mps);
-    }
-    if (p.turn_radius_m) {
-      speed_mps = std::min(speed_mps, std::sqrt(p.lateral_acceleration_mps2 * *p.turn_radius_m));
-    }
-    speeds_mps.push_back(speed_mps);
-  }
-  return speeds_mps;
-}
-
-std::vector<Corner> Route::corners(const WaypointParameters& p) const {
-  std::vector<Corner> corners;
-  for (std::size_t k = 0; k < p.waypoints.size(); ++k) {
-    const double v_mps = corner_speeds_mps_[k];
-    corners.push_back({p.waypoints[k].position,
-                       p.turn_radius_m.value_or(v_mps * v_mps / p.lateral_acceleration_mps2),
-                       v_mps * (p.banks ? kShortestBankedTurnS : kShortestTurnS)});
-  }
-  return corners;
-}
-
-/// Two for each corner: where it begins to turn, which is where it stops, and where that ends.
-std::vector<SpeedNode> Route::nodes(const WaypointParameters& p) const {
-  const std::vector<TurnSpan>& turns = path_.turns();
-  std::vector<SpeedNode> nodes;
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    const std::size_t corner = k % p.waypoints.size();
-    const Waypoint& waypoint = p.waypoints[corner];
-    const double v_mps = corner_speeds_mps_[corner];
-    const bool turns_here = turns[k].end_m > turns[k].start_m;
-    nodes.push_back({turns[k].start_m, waypoint.stop_s ? 0.0 : v_mps,
-                     turns_here ? v_mps : waypoint.speed_mps, waypoint.stop_s.value_or(0.0)});
-    if (p.loop && k + 1 == turns.size()) break;
-    if (turns_here) nodes.push_back({turns[k].end_m, v_mps, waypoint.speed_mps, 0.0});
-  }
-  return nodes;
-}
 
 /// f(s(t)) from f as a function of s.
 Jet in_time(const Jet& f, const Jet& s) {

@@ -16,12 +16,6 @@
 namespace leeway::sim {
 namespace {
 
-Estimate estimate_at(const NavState& nav) {
-  Estimate estimate;
-  estimate.nav = nav;
-  return estimate;
-}
-
 Eigen::Vector3d rate_in(const TruePath& path, std::size_t increment) {
   const ImuIncrement inc = path.plan.increments()[increment];
   return inc.dtheta_b_rad / inc.dt_s;
@@ -30,7 +24,7 @@ Eigen::Vector3d rate_in(const TruePath& path, std::size_t increment) {
 /// Position and velocity of an antenna at the end of an increment.
 Eigen::Matrix<double, 6, 1> antenna_e(const TruePath& path, std::size_t increment,
                                       const Eigen::Vector3d& lever_arm_b_m) {
-  const Estimate estimate = estimate_at(path.at_end_of(increment));
+  const Estimate estimate{path.at_end_of(increment), {}};
   Eigen::Matrix<double, 6, 1> antenna;
   antenna << antenna_position_e(estimate, lever_arm_b_m),
       antenna_velocity_e(estimate, lever_arm_b_m, rate_in(path, increment));
@@ -47,7 +41,7 @@ class Pass {
         noise_(process_noise(model.config.imu, model.config.biases)),
         strapdown_(strapdown_function(model.config.strapdown)),
         state_{ErrorVector::Zero(),
-               {SymmetricKernel<Scalar>(initial_covariance(estimate_at(path.states.front()),
+               {SymmetricKernel<Scalar>(initial_covariance({path.states.front(), {}},
                                                            path.plan.initial(), model.config.imu,
                                                            model.config.biases)),
                 model.config.covariance_interval_s}} {}
@@ -89,8 +83,7 @@ class Pass {
     for (std::size_t k = first + 1; k < first + count; ++k) append(inc, path_.plan.increments()[k]);
     NavState nav = path_.states[first];
     const StrapdownStep step = strapdown_(nav, inc, history_);
-    const ErrorVector missed =
-        difference(estimate_at(path_.states[first + count]), estimate_at(nav));
+    const ErrorVector missed = difference({path_.states[first + count], {}}, {nav, {}});
     const Eigen::Matrix3d true_gradient_e = gravity_gradient_e(path_.states[first].r_e_m);
     ErrorDynamics dynamics{.dt_s = inc.dt_s,
                            .C_eb_mean = step.C_eb_mean,

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kAgreesWithin = 0.2;        // of what was measured
 constexpr double kAgreesWithinLimit = 0.01;  // or of the limit
+constexpr double kWorthwhile = 0.05;  // of what the model costs: to less, costs do not repeat
 
 void validate(const Scene& scene, const ReductionOptions& options) {
   require("reduce", "repeat", options.repeat, between(1.0, 1000.0));
@@ -50,8 +51,7 @@ class Reduction {
   ModelReduction run() {
     predict_terms();
     price_terms();
-    const std::vector<ModelTerm> dropped =
-        cheapest_terms(plan_, prediction_, full_, result_.terms, options_.repeat);
+    const std::vector<ModelTerm> dropped = dropped_beside_others(dropped_by_saving());
     report(0.3);
     mark(dropped);
     choose_models(dropped);
@@ -94,6 +94,45 @@ class Reduction {
     for (TermWorth& term : result_.terms) {
       if (sources_of(term.term).empty()) term.cost = *++saving;
     }
+  }
+
+  bool is_admissible(const PredictedAccuracy& p, const PredictedAccuracy& full) const {
+    return p.is_finite && p.error_m <= kUsableLimit * result_.scene.limit.limit_m &&
+           is_as_honest(p.rms_over_sigma, p.nees, full.rms_over_sigma, full.nees);
+  }
+
+  /// The terms that save most first, each that the limit and honesty leave room for.
+  std::vector<ModelTerm> dropped_by_saving() const {
+    const auto saving_of = [](const TermWorth& term) {
+      return term.cost ? term.cost->median_ns_per_s : 0.0;
+    };
+    std::vector<TermWorth> terms = result_.terms;
+    std::sort(terms.begin(), terms.end(), [&](const TermWorth& a, const TermWorth& b) {
+      return saving_of(a) > saving_of(b);
+    });
+    const PredictedAccuracy full = prediction_.of(full_);
+    const double least =
+        kWorthwhile * model_costs(plan_, {full_}, 1, {}).costs.front().median_ns_per_s;
+    std::vector<ModelTerm> dropped;
+    for (const TermWorth& term : terms) {
+      if (!may_be_dropped(term.term) || saving_of(term) < least) continue;
+      dropped.push_back(term.term);
+      if (!is_admissible(prediction_.of(without(full_, dropped)), full)) dropped.pop_back();
+    }
+    return dropped;
+  }
+
+  /// Without what saves nothing beside the others: it is no reason for an error.
+  std::vector<ModelTerm> dropped_beside_others(std::vector<ModelTerm> dropped) const {
+    for (std::size_t i = dropped.size(); i-- > 0;) {
+      std::vector<ModelTerm> fewer = dropped;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      const ModelCosts costs = model_costs(
+          plan_, {without(full_, fewer), without(full_, dropped)}, options_.repeat, {});
+      const double worthwhile = kWorthwhile * costs.costs.front().median_ns_per_s;
+      if (costs.savings.back().median_ns_per_s < worthwhile) dropped = fewer;
+    }
+    return dropped;
   }
 
   void mark(const std::vector<ModelTerm>& dropped) {
@@ -167,6 +206,13 @@ class Reduction {
 };
 
 }  // namespace
+
+bool is_as_honest(double rms_over_sigma, double nees, double full_rms_over_sigma,
+                  double full_nees) {
+  const double states = kErrorStates;
+  return rms_over_sigma <= kHonesty * std::max(1.0, full_rms_over_sigma) &&
+         nees <= kHonesty * kHonesty * std::max(states, full_nees);
+}
 
 bool agrees(const TermWorth& term, double limit_m) {
   if (!std::isfinite(term.predicted_m)) return term.diverged > 0;

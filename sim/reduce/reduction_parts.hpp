@@ -61,12 +61,6 @@ ModelCosts model_costs(const TrialPlan& plan, const std::vector<FilterModel>& mo
 /// The scene with these errors of its sensors taken away, and every other random number the same.
 Scene without_sources(Scene scene, const std::vector<ErrorSource>& sources);
 
-/// The terms of the cheapest model found that keeps scene.limit and the honesty of the full one,
-/// by prediction.
-std::vector<ModelTerm> cheapest_terms(const TrialPlan& plan, const TermPrediction& prediction,
-                                      const FilterModel& full, const std::vector<TermWorth>& terms,
-                                      int rounds);
-
 /// Whether the reduced model keeps its promise as well as the full one: kHonesty.
 bool is_as_honest(double rms_over_sigma, double nees, double full_rms_over_sigma, double full_nees);
 

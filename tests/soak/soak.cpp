@@ -167,16 +167,16 @@ class Soak {
   /// The newest fix that reached the filter is judged again when an older one comes in: the last
   /// judgement counts. One that is overtaken by a younger one is not seen at all, whatever it was.
   void note_update() {
-    const UpdateOutcome& report = navigator_.last_update();
-    if (newest_judged_ && newest_judged_->time != report.time) book(*newest_judged_);
-    newest_judged_ = report;
+    const UpdateOutcome& outcome = navigator_.last_update();
+    if (newest_judged_ && newest_judged_->time != outcome.time) book(*newest_judged_);
+    newest_judged_ = outcome;
   }
 
-  void book(const UpdateOutcome& report) {
-    const double t_s = to_seconds(report.time);
-    if (report.outcome != UpdateOutcome::Outcome::kFused || t_s < settled_from_s_) return;
-    hour_.nis.nis_sum += report.nis;
-    hour_.nis.dof_sum += report.dof;
+  void book(const UpdateOutcome& outcome) {
+    const double t_s = to_seconds(outcome.time);
+    if (outcome.outcome != UpdateOutcome::Outcome::kFused || t_s < settled_from_s_) return;
+    hour_.nis.nis_sum += outcome.nis;
+    hour_.nis.dof_sum += outcome.dof;
   }
 
   void every_second(std::int64_t second) {

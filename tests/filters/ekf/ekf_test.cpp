@@ -68,11 +68,11 @@ Eigen::Matrix3d random_covariance3(sim::Random& random, double sigma) {
 TEST_CASE("a position fix in closed form: variances 4 and 1 share 5 m as 4 to 1") {
   Ekf ekf(plain_config(), at_equator(), diagonal_covariance(0.0, 0.1, 2.0, 0.0, 0.0));
   const Eigen::Vector3d offset_m(0.0, 5.0, 0.0);
-  const UpdateOutcome report = ekf.update(position_fix(at_equator().nav.r_e_m + offset_m, 1.0));
-  CHECK(report.outcome == Outcome::kFused);
-  CHECK(report.dof == 3);
-  CHECK(near(report.nis, 25.0 / 5.0, 1e-14));
-  CHECK(report.covariance_positive == false);  // nothing is unknown but position and velocity
+  const UpdateOutcome outcome = ekf.update(position_fix(at_equator().nav.r_e_m + offset_m, 1.0));
+  CHECK(outcome.outcome == Outcome::kFused);
+  CHECK(outcome.dof == 3);
+  CHECK(near(outcome.nis, 25.0 / 5.0, 1e-14));
+  CHECK(outcome.covariance_positive == false);  // nothing is unknown but position and velocity
   CHECK(near(ekf.estimate().nav.r_e_m - at_equator().nav.r_e_m, 0.8 * offset_m, 2e-9));
   CHECK(near(ekf.covariance().diagonal().segment<3>(kDr), Eigen::Vector3d::Constant(0.8), 1e-15));
   CHECK(near(ekf.covariance().diagonal().segment<3>(kDv), Eigen::Vector3d::Constant(0.01), 1e-16));
@@ -121,10 +121,10 @@ TEST_CASE("a whole fix against the dense Kalman update in long double, and the r
     Estimate after = before;
     inject(after, x_hat);
 
-    const UpdateOutcome report = ekf.update(fix);
-    REQUIRE(report.outcome == Outcome::kFused);
-    CHECK(report.covariance_positive);
-    CHECK(near(report.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
+    const UpdateOutcome outcome = ekf.update(fix);
+    REQUIRE(outcome.outcome == Outcome::kFused);
+    CHECK(outcome.covariance_positive);
+    CHECK(near(outcome.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
     // Six rows of a prior up to 50 times wider than the fix.
     CHECK(test::scaled_distance(ekf.covariance(), P_after) < 1e-9);
     const ErrorVector off = difference(ekf.estimate(), after).cwiseQuotient(sigmas);
@@ -177,11 +177,11 @@ TEST_CASE("with the vehicle's parameters: the dense Kalman update of all twenty,
     Estimate after = before;
     inject(after, x_hat.head<kErrorStates>());
 
-    const UpdateOutcome report = ekf.update(m);
-    REQUIRE(report.outcome == Outcome::kFused);
-    CHECK(report.dof == m.rows());
-    CHECK(near(report.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
-    CHECK(near(report.log_det_S, std::log(static_cast<double>(S.determinant())), 1e-9));
+    const UpdateOutcome outcome = ekf.update(m);
+    REQUIRE(outcome.outcome == Outcome::kFused);
+    CHECK(outcome.dof == m.rows());
+    CHECK(near(outcome.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
+    CHECK(near(outcome.log_det_S, std::log(static_cast<double>(S.determinant())), 1e-9));
     JointMatrix P_joint;
     P_joint << ekf.covariance(), ekf.vehicle()->cross, ekf.vehicle()->cross.transpose(),
         ekf.vehicle()->P;
@@ -381,10 +381,10 @@ TEST_CASE("the gate refuses a 100 m outlier whole and changes nothing") {
   const Ekf untouched = ekf;
   GnssFix fix = position_fix(at_equator().nav.r_e_m + Eigen::Vector3d(0.0, 100.0, 0.0), 2.0);
   fix.velocity = GnssVelocity{};  // right, but of the same receiver
-  const UpdateOutcome report = ekf.update(fix);
-  CHECK(report.outcome == Outcome::kGated);
-  CHECK(near(report.gate, 38.26, 0.01));  // chi-square, 6 degrees, 1e-6
-  CHECK(near(report.nis, 1e4 / 8.0, 0.1));
+  const UpdateOutcome outcome = ekf.update(fix);
+  CHECK(outcome.outcome == Outcome::kGated);
+  CHECK(near(outcome.gate, 38.26, 0.01));  // chi-square, 6 degrees, 1e-6
+  CHECK(near(outcome.nis, 1e4 / 8.0, 0.1));
   CHECK(same_bits(ekf, untouched));
   fix.position->r_e_m.y() = 4.0;
   CHECK(ekf.update(fix).outcome == Outcome::kFused);
@@ -451,10 +451,10 @@ TEST_CASE("NIS over seeds 1 to 20 of a consistent scene is chi-square, on both s
     for (const ImuIncrement& inc : log.imu) {
       ekf.predict(inc);
       if (next == log.fixes.size() || log.fixes[next].time != inc.time) continue;
-      const UpdateOutcome report = ekf.update(log.fixes[next++]);
-      CHECK(report.covariance_positive);
-      nis += report.nis;
-      dof += report.dof;
+      const UpdateOutcome outcome = ekf.update(log.fixes[next++]);
+      CHECK(outcome.covariance_positive);
+      nis += outcome.nis;
+      dof += outcome.dof;
     }
     CHECK(next == 100);
   }

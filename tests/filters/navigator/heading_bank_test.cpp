@@ -40,17 +40,17 @@ double turn_sigma_rad(const ErrorMatrix& P, const Eigen::Vector3d& axis_e) {
   return std::sqrt(axis_e.dot(P.block<3, 3>(kPsi, kPsi) * axis_e));
 }
 
-/// A report of a fix that says nothing but the likelihood of each member by its turn about up.
+/// An outcome of a fix that says nothing but the likelihood of each member by its turn about up.
 template <class F>
 auto reporting(F&& nis_of_turn) {
   return [nis_of_turn](Ekf& filter) {
-    UpdateOutcome report;
-    report.time = filter.estimate().nav.time;
-    report.dof = 3;
-    report.gate = 1e3;
-    report.nis = nis_of_turn(log_quaternion(filter.estimate().nav.q_eb).x());
-    report.outcome = report.nis <= report.gate ? Outcome::kFused : Outcome::kGated;
-    return report;
+    UpdateOutcome outcome;
+    outcome.time = filter.estimate().nav.time;
+    outcome.dof = 3;
+    outcome.gate = 1e3;
+    outcome.nis = nis_of_turn(log_quaternion(filter.estimate().nav.q_eb).x());
+    outcome.outcome = outcome.nis <= outcome.gate ? Outcome::kFused : Outcome::kGated;
+    return outcome;
   };
 }
 
@@ -161,9 +161,9 @@ TEST_CASE("measurements close in time repeat each other: their evidence counts i
 TEST_CASE("an outlier that all refuse decides nothing; a member that is not a number goes") {
   HeadingBank bank = bank_of(std::numbers::pi);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const UpdateOutcome report =
+  const UpdateOutcome outcome =
       bank.update(reporting([](double turn_rad) { return 5e3 + 1e3 * turn_rad; }));
-  CHECK(report.outcome == Outcome::kGated);
+  CHECK(outcome.outcome == Outcome::kGated);
   CHECK(bank.count() == 12);
   CHECK(near(bank.best_weight(), 1.0 / 12.0, 1e-15));
   bank.update([&](Ekf& filter) {
