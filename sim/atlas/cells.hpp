@@ -1,5 +1,5 @@
 /// @file
-/// The cells of a scene, condition by condition.
+/// The frame of every scene: its cells, condition by condition.
 #pragma once
 
 #include <vector>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/scene/scene.hpp"
+#include "sim/atlas/cells.hpp"
 
 namespace leeway::sim {
 

@@ -1,5 +1,7 @@
 #include "sim/atlas/free_run.hpp"
 
+#include <algorithm>
+
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
 

@@ -10,6 +10,7 @@
 #include "leeway/model/error_state.hpp"
 #include "leeway/sensors/imu.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
+#include "sim/atlas/cells.hpp"
 #include "sim/atlas/watched_filter.hpp"
 
 namespace leeway::sim {

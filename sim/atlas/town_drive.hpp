@@ -5,7 +5,6 @@
 #include <functional>
 #include <vector>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/atlas/trials.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
 #include "sim/atlas/free_run.hpp"
 
@@ -22,13 +23,15 @@ std::vector<double> imu_rates_hz(const AtlasOptions& options) {
 }  // namespace
 
 std::vector<AtlasCell> vibration_cells(
-    const std::function<Trajectory(double)>& motion,
+    const std::function<LocalMotion(double, double)>& motion,
     const std::function<double(const NavState&, const NavState&, double)>& figure,
     const AtlasOptions& options) {
   return cells_over(frequencies_hz(options), [&](double frequency_hz) {
     std::vector<AtlasCell> cells;
-    Trajectory trajectory = motion(frequency_hz);
-    trajectory.duration_s = kVibrationS;
+    Trajectory trajectory{.name = "vibration",
+                          .plane = TangentPlane(kDefaultOrigin),
+                          .duration_s = kVibrationS};
+    trajectory.motion = [&motion, frequency_hz](double t_s) { return motion(frequency_hz, t_s); };
     trajectory.period_s = 1.0;
     const NavState start = truth_at(trajectory, 0.0).nav;
     const NavState truth = truth_at(trajectory, kVibrationS).nav;

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
+#include "sim/atlas/cells.hpp"
 
 namespace leeway::sim {
 
@@ -14,7 +14,7 @@ namespace leeway::sim {
 /// @param motion  repeats every second
 /// @param figure  of the truth and the estimate after so many seconds
 std::vector<AtlasCell> vibration_cells(
-    const std::function<Trajectory(double frequency_hz)>& motion,
+    const std::function<LocalMotion(double frequency_hz, double t_s)>& motion,
     const std::function<double(const NavState& truth, const NavState& nav, double t_s)>& figure,
     const AtlasOptions& options);
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <utility>
 
-#include "leeway/sim/tools/parallel.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 
 namespace leeway::sim {

@@ -14,23 +14,14 @@ constexpr double kSigmasOfMaximum = 3.0;
 /// Where a field is in a model.
 double& field_of(ImuErrorModel& model, Triad which, ModelField field) {
   TriadErrorModel& triad = which == Triad::kGyro ? model.gyro : model.accelerometer;
-  switch (field) {
-    case ModelField::kBiasSigma:
-      return triad.bias_sigma;
-    case ModelField::kInRunSigma:
-      return triad.in_run.sigma;
-    case ModelField::kInRunTau:
-      return triad.in_run.tau_s;
-    case ModelField::kNoise:
-      return triad.noise_density;
-    case ModelField::kScaleSigma:
-      return triad.scale_sigma;
-    case ModelField::kMisalignmentSigma:
-      return triad.misalignment_sigma_rad;
-    case ModelField::kGSensitivitySigma:
-      break;
-  }
-  return model.G_g_sigma_radps_per_mps2;
+  double* const in_order[] = {&triad.bias_sigma,
+                              &triad.in_run.sigma,
+                              &triad.in_run.tau_s,
+                              &triad.noise_density,
+                              &triad.scale_sigma,
+                              &triad.misalignment_sigma_rad,
+                              &model.G_g_sigma_radps_per_mps2};
+  return *in_order[static_cast<std::size_t>(field)];
 }
 
 /// The units in which models that are not of the catalogue are shown.

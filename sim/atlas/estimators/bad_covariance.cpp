@@ -3,7 +3,6 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 

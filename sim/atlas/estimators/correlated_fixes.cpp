@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "leeway/model/gnss_measurement.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/linear_response.hpp"

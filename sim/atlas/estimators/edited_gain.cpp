@@ -2,7 +2,6 @@
 
 #include "filters/ekf/basic_ekf.hpp"
 #include "leeway/model/process_noise.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 #include "sim/atlas/watched_ekf.hpp"

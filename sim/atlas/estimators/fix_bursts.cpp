@@ -1,7 +1,6 @@
 #include <cmath>
 #include <string>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 

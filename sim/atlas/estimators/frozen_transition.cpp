@@ -3,7 +3,6 @@
 #include <string>
 
 #include "leeway/covariance/transition.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/linear_response.hpp"
 

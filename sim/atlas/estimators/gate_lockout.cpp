@@ -1,4 +1,3 @@
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 

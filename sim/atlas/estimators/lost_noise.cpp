@@ -3,7 +3,6 @@
 
 #include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/watched_filter.hpp"

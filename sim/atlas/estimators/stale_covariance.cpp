@@ -2,7 +2,6 @@
 #include <numbers>
 #include <string>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 

@@ -2,7 +2,6 @@
 #include <string>
 
 #include "leeway/earth/earth.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/trials.hpp"
 

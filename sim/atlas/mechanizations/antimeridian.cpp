@@ -1,5 +1,4 @@
 #include "leeway/earth/rotation.hpp"
-#include "sim/atlas/cells.hpp"
 #include "sim/atlas/crossing.hpp"
 
 namespace leeway::sim::scenes {

@@ -1,4 +1,3 @@
-#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
 namespace leeway::sim::scenes {

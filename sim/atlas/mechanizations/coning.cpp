@@ -1,8 +1,6 @@
 #include <numbers>
 
 #include "leeway/earth/rotation.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
-#include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/free_run.hpp"
 #include "sim/atlas/vibration.hpp"
 
@@ -12,18 +10,12 @@ namespace {
 constexpr double kConingRad = 0.1 * kRadPerDeg;
 
 /// The body's axes draw cones of this half angle.
-Trajectory coning_motion(double frequency_hz) {
-  Trajectory trajectory;
-  trajectory.name = "coning";
-  trajectory.plane = TangentPlane(kDefaultOrigin);
-  trajectory.motion = [frequency_hz](double t_s) {
-    const Jet phase = 2.0 * std::numbers::pi * frequency_hz * time_jet(t_s);
-    LocalMotion m;
-    m.roll_rad = kConingRad * sin(phase);
-    m.pitch_rad = kConingRad * cos(phase);
-    return m;
-  };
-  return trajectory;
+LocalMotion coning_motion(double frequency_hz, double t_s) {
+  const Jet phase = 2.0 * std::numbers::pi * frequency_hz * time_jet(t_s);
+  LocalMotion m;
+  m.roll_rad = kConingRad * sin(phase);
+  m.pitch_rad = kConingRad * cos(phase);
+  return m;
 }
 
 double drift_deg_per_h(const NavState& truth, const NavState& nav, double t_s) {

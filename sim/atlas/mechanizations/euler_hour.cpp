@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/true_increments.hpp"
 #include "sim/atlas/free_run.hpp"

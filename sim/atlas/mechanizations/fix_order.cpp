@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
 namespace leeway::sim::scenes {

@@ -1,6 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/free_run.hpp"
@@ -16,22 +15,10 @@ const Trajectory& float_drive() {
   return kDrive;
 }
 
+Eigen::Vector3d in_float(const Eigen::Vector3d& v) { return v.cast<float>().cast<double>(); }
+
 /// What a step leaves in single precision.
 using Rounding = void (*)(NavState& nav, const NavState& start);
-
-void round_position(NavState& nav, const NavState&) {
-  nav.r_e_m = nav.r_e_m.cast<float>().cast<double>();
-}
-
-void round_position_and_velocity(NavState& nav, const NavState& start) {
-  round_position(nav, start);
-  nav.v_e_mps = nav.v_e_mps.cast<float>().cast<double>();
-}
-
-/// The position as single-precision metres from a place nearby.
-void round_offset(NavState& nav, const NavState& start) {
-  nav.r_e_m = start.r_e_m + (nav.r_e_m - start.r_e_m).cast<float>().cast<double>();
-}
 
 double rounded_run_error_m(const std::vector<ImuIncrement>& increments, Rounding rounding) {
   const NavState start = truth_at(float_drive(), 0.0).nav;
@@ -59,9 +46,16 @@ std::vector<AtlasCell> run_float_position(const AtlasOptions& options) {
       cells.push_back({AtlasGroup::kNotOffered, variant, condition,
                        rounded_run_error_m(increments, rounding)});
     };
-    add("position/float", round_position);
-    add("position and velocity/float", round_position_and_velocity);
-    add("offset from a place nearby/float", round_offset);
+    add("position/float",
+        [](NavState& nav, const NavState&) { nav.r_e_m = in_float(nav.r_e_m); });
+    add("position and velocity/float", [](NavState& nav, const NavState&) {
+      nav.r_e_m = in_float(nav.r_e_m);
+      nav.v_e_mps = in_float(nav.v_e_mps);
+    });
+    // Metres from a place nearby.
+    add("offset from a place nearby/float", [](NavState& nav, const NavState& start) {
+      nav.r_e_m = start.r_e_m + in_float(nav.r_e_m - start.r_e_m);
+    });
     return cells;
   });
 }

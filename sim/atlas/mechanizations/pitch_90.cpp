@@ -5,7 +5,6 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/sensors/imu_class.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/atlas/free_run.hpp"

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "leeway/earth/rotation.hpp"
-#include "sim/atlas/cells.hpp"
 #include "sim/atlas/crossing.hpp"
 
 namespace leeway::sim::scenes {

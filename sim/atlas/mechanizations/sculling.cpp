@@ -1,8 +1,6 @@
 #include <numbers>
 
 #include "leeway/earth/rotation.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
-#include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/vibration.hpp"
 
 namespace leeway::sim::scenes {
@@ -13,19 +11,13 @@ constexpr double kScullingMps2 = 20.0;
 
 /// Rolls and swings sideways in phase: the force has a mean upwards in the body's axes, none in
 /// level ones.
-Trajectory sculling_motion(double frequency_hz) {
-  Trajectory trajectory;
-  trajectory.name = "sculling";
-  trajectory.plane = TangentPlane(kDefaultOrigin);
-  trajectory.motion = [frequency_hz](double t_s) {
-    const double omega_radps = 2.0 * std::numbers::pi * frequency_hz;
-    const Jet swing = sin(omega_radps * time_jet(t_s));
-    LocalMotion m;
-    m.roll_rad = kScullingRad * swing;
-    m.east_m = -kScullingMps2 / (omega_radps * omega_radps) * swing;
-    return m;
-  };
-  return trajectory;
+LocalMotion sculling_motion(double frequency_hz, double t_s) {
+  const double omega_radps = 2.0 * std::numbers::pi * frequency_hz;
+  const Jet swing = sin(omega_radps * time_jet(t_s));
+  LocalMotion m;
+  m.roll_rad = kScullingRad * swing;
+  m.east_m = -kScullingMps2 / (omega_radps * omega_radps) * swing;
+  return m;
 }
 
 double force_error_mg(const NavState& truth, const NavState& nav, double t_s) {

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
 namespace leeway::sim::scenes {

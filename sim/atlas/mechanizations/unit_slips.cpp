@@ -1,6 +1,5 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "leeway/sim/atlas/atlas.hpp"
 #include "sim/atlas/town_drive.hpp"
 
 namespace leeway::sim::scenes {
