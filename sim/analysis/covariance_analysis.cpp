@@ -45,12 +45,33 @@ ErrorMatrix without_biases(ErrorMatrix P) {
 class SceneCovariance {
  public:
   /// At the scene's start. @param by_source  keeps the sources apart, for error_budget()
-  SceneCovariance(const Scene& scene, bool by_source);
+  SceneCovariance(const Scene& scene, bool by_source)
+      : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
+        P_(initial_claim(scene)),
+        truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
+    const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
+    if (fixes_as_white && truth_->is_known_to(P_, fix_variance(scene.gnss.errors))) {
+      truth_.reset();
+    }
+  }
 
-  void propagate(const Leg& leg);
+  void propagate(const Leg& leg) {
+    leeway::propagate(P_, leg.Phi, noise_);
+    if (truth_) truth_->propagate(leg);
+  }
 
   /// Takes the fix into both with the filter's gains.
-  void update(const FixRows& fix);
+  void update(const FixRows& fix) {
+    FixGains<1> gains;
+    for (int row = 0; row < fix.H.rows(); ++row) {
+      const ErrorVector h = fix.H.row(row).transpose();
+      const ErrorVector cross = P_ * h;
+      gains.col(row) = cross / (h.dot(cross) + 1.0);
+      ErrorVector none = ErrorVector::Zero();
+      scalar_update(P_, none, h, 0.0);
+    }
+    if (truth_) truth_->update(fix, gains);
+  }
 
   const ErrorMatrix& claimed() const { return P_; }
   ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
@@ -63,33 +84,6 @@ class SceneCovariance {
   ErrorMatrix P_;
   std::optional<TruthModel<1>> truth_;  // none: the filter knows all there is, P is the truth
 };
-
-SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
-    : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
-      P_(initial_claim(scene)),
-      truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
-  const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
-  if (fixes_as_white && truth_->is_known_to(P_, fix_variance(scene.gnss.errors))) {
-    truth_.reset();
-  }
-}
-
-void SceneCovariance::propagate(const Leg& leg) {
-  leeway::propagate(P_, leg.Phi, noise_);
-  if (truth_) truth_->propagate(leg);
-}
-
-void SceneCovariance::update(const FixRows& fix) {
-  FixGains<1> gains;
-  for (int row = 0; row < fix.H.rows(); ++row) {
-    const ErrorVector h = fix.H.row(row).transpose();
-    const ErrorVector cross = P_ * h;
-    gains.col(row) = cross / (h.dot(cross) + 1.0);
-    ErrorVector none = ErrorVector::Zero();
-    scalar_update(P_, none, h, 0.0);
-  }
-  if (truth_) truth_->update(fix, gains);
-}
 
 /// The extremes of a stretch of the scene.
 struct Window {

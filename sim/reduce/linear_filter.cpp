@@ -69,22 +69,14 @@ class Pass {
     Covariance covariance;
   };
 
-  /// What one increment of the model does to a mean error.
-  struct Stretch {
-    const Transition& Phi;
-    const ErrorVector& missed;
-    const Eigen::Vector3d& r_e_m;
-    const Eigen::Matrix3d& gravity_gradient_e;
-    double dt_s;
-  };
-
   void step(std::size_t first, std::size_t count) {
     ImuIncrement inc = path_.plan.increments()[first];
     for (std::size_t k = first + 1; k < first + count; ++k) append(inc, path_.plan.increments()[k]);
     NavState nav = path_.states[first];
     const StrapdownStep step = strapdown_(nav, inc, history_);
     const ErrorVector missed = difference({path_.states[first + count], {}}, {nav, {}});
-    const Eigen::Matrix3d true_gradient_e = gravity_gradient_e(path_.states[first].r_e_m);
+    const Eigen::Vector3d r_e_m = path_.states[first].r_e_m;
+    const Eigen::Matrix3d true_gradient_e = gravity_gradient_e(r_e_m);
     ErrorDynamics dynamics{.dt_s = inc.dt_s,
                            .C_eb_mean = step.C_eb_mean,
                            .dv_f_e_mps = step.dv_f_e_mps,
@@ -94,28 +86,25 @@ class Pass {
     Transition Phi;
     advance(Phi, dynamics);
     if (!model_.config.gravity_gradient) dynamics.gravity_gradient_e.setZero();
-    const Stretch stretch{Phi, missed, path_.states[first].r_e_m, true_gradient_e, inc.dt_s};
-    carry(state_, stretch, dynamics);
-    if (without_fix_) carry(*without_fix_, stretch, dynamics);
-  }
-
-  void carry(State& state, const Stretch& stretch, const ErrorDynamics& dynamics) const {
-    ErrorVector& mean = state.mean;
-    const Eigen::Vector3d push_e_mps = gravity_beyond_linear(mean.segment<3>(kDr), stretch);
-    mean = times(stretch.Phi, mean) + stretch.missed;
-    mean.segment<3>(kDv) += push_e_mps;
-    mean.segment<3>(kDr) += 0.5 * stretch.dt_s * push_e_mps;
-    state.covariance.propagate(dynamics, noise_);
+    const auto carry = [&](State& state) {
+      const Eigen::Vector3d dr_e_m = state.mean.segment<3>(kDr);
+      const Eigen::Vector3d push_e_mps =
+          inc.dt_s * (gravity_change_e(r_e_m, dr_e_m) - true_gradient_e * dr_e_m);
+      state.mean = times(Phi, state.mean) + missed;
+      state.mean.segment<3>(kDv) += push_e_mps;
+      state.mean.segment<3>(kDr) += 0.5 * inc.dt_s * push_e_mps;
+      state.covariance.propagate(dynamics, noise_);
+    };
+    carry(state_);
+    if (without_fix_) carry(*without_fix_);
   }
 
   /// The model's field, not the normal one, is what the erring filter falls in, and over kilometres
   /// neither is linear.
-  Eigen::Vector3d gravity_beyond_linear(const Eigen::Vector3d& dr_e_m,
-                                        const Stretch& stretch) const {
+  Eigen::Vector3d gravity_change_e(const Eigen::Vector3d& r_e_m,
+                                   const Eigen::Vector3d& dr_e_m) const {
     const GravityModel gravity = model_.config.strapdown.gravity;
-    const Eigen::Vector3d difference =
-        gravity_e(gravity, stretch.r_e_m) - gravity_e(gravity, stretch.r_e_m - dr_e_m);
-    return stretch.dt_s * (difference - stretch.gravity_gradient_e * dr_e_m);
+    return gravity_e(gravity, r_e_m) - gravity_e(gravity, r_e_m - dr_e_m);
   }
 
   void score() {

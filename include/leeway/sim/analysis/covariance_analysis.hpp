@@ -16,7 +16,7 @@
 
 namespace leeway::sim {
 
-/// Where errors come from. Sources are independent of each other, so their variances add up.
+/// Sources of errors. They are independent of each other, so their variances add up.
 enum class ErrorSource {
   kInitial,             ///< attitude, velocity and position at the start
   kAccelerometerBias,   ///< turn-on spread, and what the filter is not told of the known part
@@ -52,16 +52,16 @@ constexpr auto names(ErrorSource) {
                     "gnss_velocity"};
 }
 
-/// What one source contributes.
+/// Contribution of one source to the position error.
 struct ErrorBudgetLine {
   ErrorSource source{};
   Eigen::Matrix3d mean_sq_n_m2{Eigen::Matrix3d::Zero()};  ///< E[x x^T], north, east, down
 };
 
-/// The sources that the scene has. Their mean squares add up to that of the error.
+/// Contributions of the sources that the scene has. Their mean squares add up to that of the error.
 using ErrorBudget = std::vector<ErrorBudgetLine>;
 
-/// A moment of the scene.
+/// The covariances at a moment of the scene, of the 15 errors of error_state.hpp.
 struct CovariancePoint {
   enum class Moment {
     kBetween,    ///< on the way
@@ -75,14 +75,15 @@ struct CovariancePoint {
   ErrorMatrix truth{ErrorMatrix::Zero()};          ///< E[x x^T] of its error
 };
 
+/// Options of a covariance analysis.
 struct CovarianceConfig {
   bool by_source{false};  ///< splits the truth by source: about as many times slower
   /// Called at every step and on both sides of every fix.
   std::function<void(const CovariancePoint&)> observer{};
 };
 
-/// How a scene ends: the largest error just before a fix over its last part,
-/// scored_part_s(scene).
+/// Result of an analysis: the largest horizontal error just before a fix over the last part of the
+/// scene, scored_part_s(scene).
 struct CovarianceAnalysis {
   double claimed_m{};  ///< by the scene's metric
   double true_m{};
@@ -101,10 +102,10 @@ struct CovarianceAnalysis {
 /// @param step_s  the longest step of the covariance; shortened to resolve the sensors' drift
 ErrorTrack error_track(const Scene& scene, double step_s = 1.0);
 
-/// Fixes act at their own times; with latency the error that counts is that at their arrival. The
-/// scene is followed to its end also when it has settled: what repeats to 0.1 % from one part to
-/// the next may still creep by more over a day. Outliers and the filter's gate are left out, being
-/// no linear errors.
+/// The analysis of a scene. Fixes act at their own times; with latency the error that counts is
+/// that at their arrival. The scene is followed to its end also when it has settled: what repeats
+/// to 0.1 % from one part to the next may still creep by more over a day. Outliers and the filter's
+/// gate are left out, being no linear errors.
 /// @param track  error_track() of this scene
 /// @throws Error when the scene is invalid, or no fix falls into the last part.
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,

@@ -28,6 +28,7 @@ struct Leg {
   ParameterMatrix B{ParameterMatrix::Zero()};  ///< stays zero unless the track has parameters
 };
 
+/// Options of an error track.
 struct ErrorTrackConfig {
   double step_s{1.0};                                       ///< longest leg
   bool parameters{false};                                   ///< whether B is wanted
@@ -35,19 +36,21 @@ struct ErrorTrackConfig {
   double tau_g_s{std::numeric_limits<double>::infinity()};
 };
 
-/// Attitude, rates and gravity gradient are taken at the middle of pieces a tenth of a leg long and
-/// held over the piece: on a turn of 9 deg/s legs of 1 s err by 1e-5 of their effect. A trajectory
-/// with a period is sampled over one period.
+/// The dynamics along a trajectory. Attitude, rates and gravity gradient are taken at the middle of
+/// pieces a tenth of a leg long and held over the piece: on a turn of 9 deg/s legs of 1 s err by
+/// 1e-5 of their effect. A trajectory with a period is sampled over one period.
 class ErrorTrack {
  public:
   /// @throws Error unless 0.01 <= step_s <= 100 and 0 < duration_s.
   ErrorTrack(const Trajectory& trajectory, double duration_s, const ErrorTrackConfig& config);
 
-  /// From one time to the other, or to the end of the step that from_s is in, whichever is earlier.
+  /// The leg from one time to the other, or to the end of the step that from_s is in, whichever is
+  /// earlier.
   /// @pre 0 <= from_s < to_s <= duration.
   Leg leg(double from_s, double to_s) const;
 
-  /// Calls f with the legs from one time to the other. @pre 0 <= from_s, to_s <= duration.
+  /// Walk from one time to the other: f is called with each leg.
+  /// @pre 0 <= from_s, to_s <= duration.
   template <class F>
   void follow(double from_s, double to_s, F&& f) const {
     while (from_s < to_s) {

@@ -13,6 +13,7 @@
 
 namespace leeway::sim {
 
+/// Options of solve_intervals().
 struct IntervalConfig {
   double shortest_s{0.1};  ///< intervals from here to half the scene are tried
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
@@ -44,8 +45,10 @@ struct Interval {
 };
 
 constexpr auto names(Interval::Outcome) { return std::array{"solved", "never", "always"}; }
-/// Solves for each limit by bracketing and secants in log(error) over log(interval), on the
-/// truth-model covariance analysis; the scene's own gnss.interval_s is not used.
+
+/// The correction interval for each limit, by bracketing and secants in log(error) over
+/// log(interval) on the truth-model covariance analysis; the scene's own gnss.interval_s is not
+/// used.
 /// @param progress  called with the fraction done
 /// @throws Error when the scene, the configuration or a limit is invalid.
 std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<double>& limits_m,

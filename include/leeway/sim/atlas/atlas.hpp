@@ -11,10 +11,11 @@
 
 namespace leeway::sim {
 
+/// Verdict on a figure.
 enum class AtlasVerdict { kSurvives, kDegrades, kFails };
 constexpr auto names(AtlasVerdict) { return std::array{"survives", "degrades", "fails"}; }
 
-/// What a variant is of: the columns of the matrix of all scenes.
+/// Groups of variants: the columns of the matrix of all scenes.
 enum class AtlasGroup {
   kNavigator,
   kEkf,
@@ -40,17 +41,19 @@ struct AtlasCell {
   std::string reported{};   ///< which detectors of the library say so; empty: nobody says anything
 };
 
-/// What figures mean. A figure is the larger the worse.
+/// Limits of a figure, which is the larger the worse.
 struct AtlasLimits {
   double survives{};     ///< up to here
   double degrades{};     ///< up to here; beyond, it fails
   std::string reason{};  ///< of both, in a sentence
 };
 
+/// Options of a run.
 struct AtlasOptions {
   bool brief{false};  ///< fewer trials, shorter drives: for tests
 };
 
+/// A scene that is built to break a method.
 struct AtlasScene {
   int place{};           ///< scenes and their pages are in the order of this number
   std::string key{};     ///< "parked-rtk": of the command line, and the page docs/atlas/KEY.md
@@ -62,9 +65,10 @@ struct AtlasScene {
   std::function<std::vector<AtlasCell>(const AtlasOptions&)> run{};
 };
 
+/// The verdict on a figure; kFails for one that is not a number.
 AtlasVerdict verdict_of(const AtlasLimits& limits, double figure);
 
-/// A variant that the library offers fails, and no detector says so.
+/// Whether a variant that the library offers fails, and no detector says so.
 bool fails_silently(const AtlasLimits& limits, const AtlasCell& cell);
 
 /// All scenes, in the order of their places.
@@ -74,12 +78,13 @@ const std::vector<AtlasScene>& atlas_scenes();
 /// @throws Error for an unknown key: the nearest one, and all there are.
 std::vector<AtlasScene> atlas_scenes(const std::vector<std::string>& keys);
 
+/// The cells of a scene.
 struct AtlasResult {
   AtlasScene scene{};
   std::vector<AtlasCell> cells{};
 };
 
-/// Runs the scenes. The same bits on any number of threads.
+/// The results of the scenes, in their order. The same bits on any number of threads.
 /// @param threads  0: as many as there are processors
 std::vector<AtlasResult> run_atlas(const std::vector<AtlasScene>& scenes,
                                    const AtlasOptions& options, int threads = 0,

@@ -18,7 +18,7 @@ struct AtlasSurprise {
   std::string found{};
 };
 
-/// How far a figure may be from the expected one, as a factor. Other compilers and processors round
+/// Greatest factor between a figure and the expected one. Other compilers and processors round
 /// otherwise; that moves a figure where rounding is what a scene shows.
 inline constexpr double kAtlasFigureFactor = 1.25;
 

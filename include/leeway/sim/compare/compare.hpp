@@ -16,7 +16,7 @@
 
 namespace leeway::sim {
 
-/// Which trials is the scene's: seeds first_seed to first_seed + trials - 1.
+/// Options of a comparison. Its trials are the scene's, with seeds from first_seed on.
 struct CompareOptions {
   int repeat{5};   ///< timed runs of every variant, 1 to 1000
   int threads{0};  ///< of the runs that are not timed; 0: all processors
@@ -30,13 +30,14 @@ struct Cost {
   double most_ns_per_s{};
 };
 
-/// What the errors before scored fixes were, over all trials.
+/// Accuracy of a variant: its errors before scored fixes, over all trials.
 struct Accuracy {
   CampaignResult figures{};  ///< of claims only where there are any; no NIS, no counts of fixes
   double r95_m{};            ///< 95 % of the horizontal errors are within; NaN without any
   bool has_claim{true};      ///< false: the estimator claims nothing, and cannot be consistent
 };
 
+/// Verdict on what a filter claims.
 enum class Consistency {
   kNoClaim,
   kConsistent,   ///< mean NEES within its band
@@ -50,8 +51,10 @@ constexpr auto names(Consistency) {
                     "pessimistic", "diverged",   "not finite"};
 }
 
+/// The verdict on an accuracy.
 Consistency consistency_of(const Accuracy& accuracy);
 
+/// A variant with its cost and accuracy.
 struct Compared {
   Variant variant{};
   std::string name{};
@@ -61,6 +64,7 @@ struct Compared {
   bool on_front{false};
 };
 
+/// Result of a comparison.
 struct Comparison {
   Scene scene{};                     ///< as it was run
   std::vector<int> imu_dividers{};   ///< of the rates that its fixes allow
@@ -80,8 +84,8 @@ std::vector<Accuracy> accuracy_of(const std::vector<Variant>& variants, const Sc
                                   int threads = 0,
                                   const std::function<void(double)>& progress = {});
 
-/// sensible_variants() and the combinations of their cheapest survivors: the rules are in
-/// docs/theory/compare/compare.md. Accuracies are the same bits for the same scene; costs are of
+/// The comparison of sensible_variants() and combinations of the cheapest survivors: the rules are
+/// in docs/theory/compare/compare.md. Accuracies are the same bits for the same scene; costs are of
 /// this run.
 /// @throws Error when scene or options are invalid.
 Comparison compare(const Scene& scene, const CompareOptions& options = {});

@@ -25,8 +25,7 @@ inline constexpr double kErrorResolution = 1e-3;
 /// close, so somebody is always left.
 bool dominates(const ParetoPoint& a, const ParetoPoint& b);
 
-/// For each point the cheapest of those that dominate it; empty on the front and out of the
-/// contest.
+/// The cheapest of those that dominate each point; empty on the front and out of the contest.
 std::vector<std::optional<std::size_t>> dominators(const std::vector<ParetoPoint>& points);
 
 }  // namespace leeway::sim

@@ -11,6 +11,7 @@
 
 namespace leeway::sim {
 
+/// Estimators that a variant can run.
 enum class Estimator {
   kEkf,           ///< BasicEkf (default)
   kInvariantEkf,  ///< InvariantEkf: the same on the error of SE_2(3)
@@ -18,6 +19,7 @@ enum class Estimator {
 };
 constexpr auto names(Estimator) { return std::array{"ekf", "invariant", "reset"}; }
 
+/// One way of running the filter; the default is that of the library.
 struct Variant {
   Estimator estimator{Estimator::kEkf};
   StrapdownPolicy strapdown{};
@@ -32,7 +34,7 @@ struct Variant {
 /// Whether the kernel has a choice of update forms.
 bool has_update_forms(KernelForm kernel);
 
-/// Names every choice that the variant has, and no other: two variants of a name run alike.
+/// The name of a variant: every choice that it has, and no other. Two of a name run alike.
 /// "two-sample/normal/turning/50Hz symmetric/joseph/double/0.1s". No comma, no quote.
 std::string variant_name(const Variant& variant, double imu_rate_hz);
 

@@ -15,7 +15,7 @@
 
 namespace leeway::sim {
 
-/// What can be left out of the model, or taken more coarsely.
+/// Terms of the model that can be left out, or taken more coarsely.
 enum class ModelTerm {
   kEarthTurn,          ///< the Earth's rotation in the attitude
   kCoriolis,           ///< in the velocity
@@ -54,7 +54,7 @@ constexpr auto names(ModelTerm) {
                     "misalignments",     "g_sensitivity"};
 }
 
-/// What the filter does without the term.
+/// The substitute for a term: what the filter does without it.
 std::string_view substitute(ModelTerm term);
 
 /// The terms that mean something in the scene. @param scene  as by reduce_model()
@@ -68,14 +68,14 @@ struct FilterModel {
   bool knows_latency{true};
 };
 
-/// Everything on, at the scene's rate: two samples, normal gravity, the turning Earth, P at every
-/// increment in double.
+/// The full model: everything on, at the scene's rate. Two samples, normal gravity, the turning
+/// Earth, P at every increment in double.
 FilterModel full_model(const Scene& scene);
 
 /// The model without some terms.
 FilterModel without(FilterModel model, const std::vector<ModelTerm>& terms);
 
-/// What a filter's errors before scored fixes are, horizontally, by a linear analysis.
+/// Accuracy by a linear analysis: a filter's horizontal errors before scored fixes.
 struct PredictedAccuracy {
   double error_m{};         ///< by the scene's metric
   double rms_m{};           ///< root mean square
@@ -85,13 +85,14 @@ struct PredictedAccuracy {
   bool is_finite{true};     ///< false: P is not positive, and nothing above means anything
 };
 
-/// What they are by trials.
+/// The same accuracy by trials.
 struct MeasuredAccuracy {
   double error_m{};          ///< by the scene's metric, empirical
   double difference_m{};     ///< root mean square of the difference to the full model's error
   CampaignResult figures{};  ///< without NIS and counts of fixes
 };
 
+/// Worth of a term: what it contributes to the error when left out, and what it costs.
 struct TermWorth {
   ModelTerm term{};
   double predicted_m{};  ///< contribution: PredictedAccuracy::difference_m; NaN: P would not stay
@@ -102,6 +103,7 @@ struct TermWorth {
   bool is_kept{true};          ///< in the reduced model
 };
 
+/// Accuracy and cost of a model.
 struct ModelWorth {
   FilterModel model{};
   PredictedAccuracy predicted{};
@@ -113,6 +115,7 @@ struct ModelWorth {
 /// filter would be lost, and some trials were.
 bool agrees(const TermWorth& term, double limit_m);
 
+/// Result of a reduction.
 struct ModelReduction {
   Scene scene{};  ///< as it was run
   std::vector<TermWorth> terms{};
@@ -131,6 +134,7 @@ inline constexpr double kHonesty = 1.1;
 /// The part of the limit that a choice may use: the rest is for the chance of the trials.
 inline constexpr double kUsableLimit = 0.9;
 
+/// Options of a reduction.
 struct ReductionOptions {
   int repeat{11};  ///< timed runs of every model, 1 to 1000
   int threads{0};  ///< of what is not timed; 0: all processors

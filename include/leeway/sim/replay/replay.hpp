@@ -23,6 +23,7 @@ namespace leeway::sim {
 /// The logs of the sensors of kAidings, in their order. Empty: none.
 using AidingLogs = std::array<std::filesystem::path, kAidings.size()>;
 
+/// Logs of a replay, and what is done with them.
 struct ReplayInput {
   std::filesystem::path imu{};
   std::filesystem::path gnss{};
@@ -49,6 +50,7 @@ struct RmsErrors {
   double attitude_deg{};  ///< 3-D rotation angle; NaN when the truth has none
 };
 
+/// Result of a replay.
 struct ReplayResult {
   double first_solution_s{};
   double last_solution_s{};
@@ -70,7 +72,7 @@ struct ReplayResult {
   std::array<LogSummary, kAidings.size()> aiding_summaries{};
 };
 
-/// A branch without fixes, at the time of a withheld fix or at its end.
+/// The error of a branch without fixes, at the time of a withheld fix or at its end.
 struct OutageEpoch {
   std::size_t outage{};  ///< of ReplayInput::outages
   double since_s{};      ///< since it began
@@ -78,7 +80,7 @@ struct OutageEpoch {
   double sigma_h_m{};  ///< the branch's own sqrt(P_NN + P_EE)
 };
 
-/// Called on the way, where not empty.
+/// Callbacks on the way; empty ones are not called.
 struct ReplayObserver {
   std::function<void(Time)> progress{};  ///< now and then, with the time reached
   /// At the rate of the solution, with the truth of that time where there is one.
@@ -88,11 +90,11 @@ struct ReplayObserver {
   std::function<void(const OutageEpoch&)> outage{};
 };
 
-/// What the log of a sensor holds.
+/// Columns of the log of a sensor.
 ScalarColumns columns_of(const Aiding& aiding);
 
-/// Runs the log in one pass and constant memory. Every outage branches from the fully aided state,
-/// so outages may overlap.
+/// The replay of the logs, in one pass and constant memory. Every outage branches from the fully
+/// aided state, so outages may overlap.
 /// @throws Error when a file cannot be read or the configuration is invalid.
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const ReplayObserver& observer = {});

@@ -14,12 +14,13 @@
 
 namespace leeway::sim {
 
+/// Progress of a campaign.
 struct CampaignProgress {
   double fraction{};     ///< of the trials of this process, those of the journal included
   double remaining_s{};  ///< estimated from the trials finished so far
 };
 
-/// Which trials is the scene's: seeds first_seed to first_seed + trials - 1.
+/// Options of a campaign. Its trials are the scene's: seeds first_seed to first_seed + trials - 1.
 struct CampaignOptions {
   int threads{0};                        ///< 0: all processors for a process alone, one per rank
   std::optional<double> score_last_s{};  ///< as TrialPlan
@@ -29,7 +30,7 @@ struct CampaignOptions {
   std::function<void(const CampaignProgress&)> progress{};  ///< called from the calling thread
 };
 
-/// Ratios are 1 when the filter is honest. NaN where no trial was scored.
+/// Figures of a campaign. Ratios are 1 when the filter is honest, NaN where no trial was scored.
 struct CampaignResult {
   std::int64_t trials{0};
   std::int64_t resumed{0};      ///< of them from the journal
@@ -54,13 +55,13 @@ struct CampaignResult {
   std::uint64_t worst_seed{};   ///< of the trial it happened in, to run again
 };
 
-/// Memory does not depend on the number of trials.
+/// The figures of all trials of the scene. Memory does not depend on their number.
 /// @param ranks  shares the trials among its processes; the result is whole at the first only
 /// @throws Error when scene or options are invalid, JournalFailure when a trial cannot be kept,
 /// RankFailure when another rank stopped.
 CampaignResult campaign(const Scene& scene, const CampaignOptions& options, const Ranks& ranks);
 
-/// By this process alone.
+/// The same by this process alone.
 CampaignResult campaign(const Scene& scene, const CampaignOptions& options = {});
 
 }  // namespace leeway::sim

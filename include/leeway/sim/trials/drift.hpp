@@ -12,6 +12,7 @@
 
 namespace leeway::sim {
 
+/// Configuration of the drift study.
 struct DriftConfig {
   double latitude_deg{45.0};
   double imu_rate_hz{50.0};
@@ -20,7 +21,7 @@ struct DriftConfig {
   double max_time_s{2000.0};  ///< a curve ends here, or once past 100 s and 100 m
 };
 
-/// Three ways to read the table.
+/// Readings of the table.
 enum class DriftReading {
   kPaper,  ///< the cells as printed
   /// What reproduces them: the low end of the accelerometer drift on all three axes at once, the
@@ -31,8 +32,8 @@ enum class DriftReading {
 };
 constexpr auto names(DriftReading) { return std::array{"paper", "paper_assumptions", "complete"}; }
 
-/// A cell pair of the table. Percentiles are those of single trials; for the other readings they
-/// equal the error. NaN where the reading gives none.
+/// A cell pair of the table: errors in m, 3-D, and time in s. Percentiles are those of single
+/// trials; for the other readings they equal the error. NaN where the reading gives none.
 struct DriftRow {
   ImuClass imu{};
   RangeEnd range{};
@@ -43,7 +44,7 @@ struct DriftRow {
   double time_to_100m_s{};
 };
 
-/// Error against time, every second.
+/// Error against time, every second, with its percentiles over the trials.
 struct DriftCurve {
   ImuClass imu{};
   RangeEnd range{};
@@ -54,12 +55,13 @@ struct DriftCurve {
   std::vector<double> p97_5_m{};
 };
 
+/// Result of the study.
 struct DriftStudy {
   std::vector<DriftRow> rows{};      ///< by class; paper, its assumptions, complete low to high
   std::vector<DriftCurve> curves{};  ///< for the last two readings, in the same order
 };
 
-/// Runs on all processors; the result does not depend on how many.
+/// The study of all IMU classes, on all processors; the result does not depend on how many.
 /// @param progress  called with the fraction done, from the calling thread
 /// @throws Error when the configuration is out of range: latitude within +-90 deg, rate 1 to
 /// 1000 Hz, 2 to 1e6 trials, 101 to 1e5 s.

@@ -15,7 +15,7 @@
 
 namespace leeway::sim {
 
-/// What all trials of a scene share. Safe to share between threads.
+/// Plan of a scene's trials: what all of them share. Safe to share between threads.
 class TrialPlan {
  public:
   /// A fix at the end of increment `at`, the one nearest to its time, that reaches the filter at
@@ -73,8 +73,9 @@ struct TrialEpoch {
   double claimed_r95_m{};  ///< the radius that 95 % of such errors stay within, says the filter
 };
 
-/// The filter is told scene.filter and starts from its known biases, zero spread bias, and a start
-/// error drawn from initial_sigma(scene); the sensors are scene.imu. Same plan and seed, same bits.
+/// The score of one trial. The filter is told scene.filter and starts from its known biases, zero
+/// spread bias, and a start error drawn from initial_sigma(scene); the sensors are scene.imu. Same
+/// plan and seed, same bits.
 /// @param observer  called before every fix, scored or not
 TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed,
                      const std::function<void(const TrialEpoch&)>& observer = {});

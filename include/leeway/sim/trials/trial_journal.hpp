@@ -39,7 +39,7 @@ class TrialJournal {
   int file_;
 };
 
-/// Calls f with every undamaged trial of a journal, in the order of the file.
+/// Reader of a journal: calls f with every undamaged trial, in the order of the file.
 /// @throws Error as the constructor above, or when the file cannot be read.
 void read_journal(const std::filesystem::path& path, std::uint64_t fingerprint,
                   const std::function<void(const TrialScore&)>& f);
