@@ -5,10 +5,12 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <vector>
 
+#include "leeway/sim/motion/trajectory.hpp"
 #include "leeway/strapdown/integration_monitor.hpp"
 #include "leeway/strapdown/strapdown.hpp"
 #include "sim/atlas/cells.hpp"
@@ -73,5 +75,13 @@ Eigen::Vector3d attitude_error_e_rad(const NavState& truth, const NavState& nav)
 
 /// Of the position, on the ground.
 double horizontal_error_m(const NavState& truth, const NavState& nav);
+
+/// Cells of a body that vibrates: one for every scheme, frequency and IMU rate.
+/// @param motion  repeats every second
+/// @param figure  of the truth and the estimate after so many seconds
+std::vector<AtlasCell> vibration_cells(
+    const std::function<LocalMotion(double frequency_hz, double t_s)>& motion,
+    const std::function<double(const NavState& truth, const NavState& nav, double t_s)>& figure,
+    const AtlasOptions& options);
 
 }  // namespace leeway::sim

@@ -10,6 +10,7 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/ekf/ekf_config.hpp"
 #include "leeway/model/horizontal.hpp"
+#include "leeway/sim/motion/trajectories.hpp"
 #include "sim/trials/player.hpp"
 
 namespace leeway::sim {
@@ -64,12 +65,35 @@ Scene drive_scene(const Trajectory& trajectory, double imu_rate_hz, const Initia
   return scene;
 }
 
+Scene town_drive(double duration_s) {
+  return drive_scene(
+      square_loop({.straight_s = 10.0, .duration_s = duration_s}), 100.0,
+      {.tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 3.0});
+}
+
 std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n) {
   const TrialPlan plan(scene, scene.duration_s, 1);
   std::vector<RecordedTrial> trials;
   for (int seed = 1; seed <= n; ++seed) {
     trials.push_back(record_trial(plan, static_cast<std::uint64_t>(seed)));
   }
+  return trials;
+}
+
+Spoil each_increment(std::function<void(ImuIncrement&)> spoil) {
+  return [spoil = std::move(spoil)](RecordedTrial& trial) {
+    for (ImuIncrement& inc : trial.imu) spoil(inc);
+  };
+}
+
+Spoil each_fix(std::function<void(GnssFix&)> spoil) {
+  return [spoil = std::move(spoil)](RecordedTrial& trial) {
+    for (RecordedTrial::Fix& fix : trial.fixes) spoil(fix.fix);
+  };
+}
+
+std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoil& spoil) {
+  for (RecordedTrial& trial : trials) spoil(trial);
   return trials;
 }
 

@@ -26,8 +26,26 @@ Scene drive_scene(const Trajectory& trajectory, double imu_rate_hz,
                   const InitialSigma& initial = kAlignedCar,
                   const ImuErrorModel& imu = automotive_mems_model());
 
+/// The square loop at 20 m/s on a car-grade MEMS IMU at 100 Hz, white fixes of 2.5 m.
+Scene town_drive(double duration_s);
+
 /// Trials of a scene, seeds 1 to n, with the truth at every fix.
 std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n);
+
+/// What a driver, a clock or a sensor does to the inputs of a trial. They are delivered where the
+/// trial has them, whatever times they then bear.
+using Spoil = std::function<void(RecordedTrial& trial)>;
+
+/// A condition of a scene.
+struct Fault {
+  std::string condition{};
+  Spoil spoil{};
+};
+
+Spoil each_increment(std::function<void(ImuIncrement&)> spoil);
+Spoil each_fix(std::function<void(GnssFix&)> spoil);
+
+std::vector<RecordedTrial> spoiled(std::vector<RecordedTrial> trials, const Spoil& spoil);
 
 /// Called just before a fix is used, with the truth at its time.
 using BeforeFix = std::function<void(const Estimate& truth, const WatchedFilter& filter)>;

@@ -1,4 +1,4 @@
-#include "sim/atlas/town_drive.hpp"
+#include "sim/atlas/trials.hpp"
 
 namespace leeway::sim::scenes {
 namespace {

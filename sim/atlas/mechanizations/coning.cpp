@@ -2,7 +2,6 @@
 
 #include "leeway/earth/rotation.hpp"
 #include "sim/atlas/free_run.hpp"
-#include "sim/atlas/vibration.hpp"
 
 namespace leeway::sim::scenes {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/atlas/town_drive.hpp"
+#include "sim/atlas/trials.hpp"
 
 namespace leeway::sim::scenes {
 namespace {

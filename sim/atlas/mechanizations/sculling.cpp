@@ -1,7 +1,7 @@
 #include <numbers>
 
 #include "leeway/earth/rotation.hpp"
-#include "sim/atlas/vibration.hpp"
+#include "sim/atlas/free_run.hpp"
 
 namespace leeway::sim::scenes {
 namespace {

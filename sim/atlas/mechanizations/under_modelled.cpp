@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
-#include "sim/atlas/town_drive.hpp"
+#include "sim/atlas/trials.hpp"
 
 namespace leeway::sim::scenes {
 namespace {

@@ -1,6 +1,6 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "sim/atlas/town_drive.hpp"
+#include "sim/atlas/trials.hpp"
 
 namespace leeway::sim::scenes {
 namespace {
