@@ -18,7 +18,8 @@ void validate(const Scene& scene, const std::vector<double>& limits_m,
               const IntervalConfig& config) {
   for (const double limit_m : limits_m) require("interval", "limit_m", limit_m, positive_to(1e6));
   const double half_s = std::nextafter(0.5 * scene.duration_s, 0.0);
-  require("interval", "shortest_s", config.shortest_s, between(0.01, half_s));
+  require("interval", "shortest_s, below half the scene's duration,", config.shortest_s,
+          between(0.01, half_s));
   require("interval", "tolerance", config.tolerance, between(1e-6, 0.1));
 }
 

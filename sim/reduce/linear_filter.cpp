@@ -87,12 +87,13 @@ class Pass {
     advance(Phi, dynamics);
     if (!model_.config.gravity_gradient) dynamics.gravity_gradient_e.setZero();
     const auto carry = [&](State& state) {
-      const Eigen::Vector3d dr_e_m = state.mean.segment<3>(kDr);
+      ErrorVector& mean = state.mean;
+      const Eigen::Vector3d dr_e_m = mean.segment<3>(kDr);
       const Eigen::Vector3d push_e_mps =
           inc.dt_s * (gravity_change_e(r_e_m, dr_e_m) - true_gradient_e * dr_e_m);
-      state.mean = times(Phi, state.mean) + missed;
-      state.mean.segment<3>(kDv) += push_e_mps;
-      state.mean.segment<3>(kDr) += 0.5 * inc.dt_s * push_e_mps;
+      mean = times(Phi, mean) + missed;
+      mean.segment<3>(kDv) += push_e_mps;
+      mean.segment<3>(kDr) += 0.5 * inc.dt_s * push_e_mps;
       state.covariance.propagate(dynamics, noise_);
     };
     carry(state_);

@@ -26,7 +26,7 @@ constexpr int kMostTrials = 10'000'000;
 void validate(const Scene& scene, const CampaignOptions& options) {
   require("campaign", "trials", scene.trials, between(1.0, kMostTrials));
   require("campaign", "threads", options.threads, between(0.0, kMostThreads));
-  require("campaign", "score_last_s", options.score_last_s.value_or(1.0), kPositive);
+  require("campaign", "score_last_s", options.score_last_s.value_or(1.0), kPositiveOrInfinite);
   if (scene.first_seed > std::numeric_limits<std::uint64_t>::max() - kMostTrials) {
     throw Error("campaign: first_seed is " + std::to_string(scene.first_seed) +
                 ", must leave room for the seeds of all trials below 2^64");
