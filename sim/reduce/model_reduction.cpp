@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/tools/parallel.hpp"
@@ -130,7 +131,7 @@ class Reduction {
       const ModelCosts costs = model_costs(
           plan_, {without(full_, fewer), without(full_, dropped)}, options_.repeat, {});
       const double worthwhile = kWorthwhile * costs.costs.front().median_ns_per_s;
-      if (costs.savings.back().median_ns_per_s < worthwhile) dropped = fewer;
+      if (costs.savings.back().median_ns_per_s < worthwhile) dropped = std::move(fewer);
     }
     return dropped;
   }
