@@ -1,17 +1,8 @@
 #include "sim/cli/scene_options.hpp"
 
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
-
-#include <limits>
-
-#include "leeway/earth/error.hpp"
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
 #include "leeway/sim/scene/scene_file.hpp"
-#include "leeway/sim/sensors/bias_model.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -77,8 +68,8 @@ sim::Scene scene_from_file(const std::filesystem::path& file, std::optional<doub
 }
 
 void add_scene_options(CLI::App& app, SceneChoice& choice) {
-  app.add_option("--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)")
-      ->type_name("FILE.toml")
+  add_file_option(app, "--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)",
+                  "FILE.toml")
       ->required();
   app.add_option("--imu", choice.imus,
                  "IMU in place of the scene's, for truth and filter: marine, aviation, "
@@ -91,10 +82,11 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
                  "what the biases of a Table 1 class do after turn-on: stay, or wander with a "
                  "correlation time of an hour")
       ->transform(named<sim::BiasModel>());
-  app.add_option("--filter", choice.filter,
-                 "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
-                 "--write made")
-      ->type_name("FILE.toml");
+  add_file_option(
+      app, "--filter", choice.filter,
+      "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
+      "--write made",
+      "FILE.toml");
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->transform(named<HorizontalMetric>());
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")

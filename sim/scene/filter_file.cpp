@@ -3,10 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
-#include <type_traits>
 
-#include "leeway/earth/error.hpp"
 #include "lib/earth/field_walk.hpp"
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"

@@ -1,17 +1,9 @@
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <string>
-#include <vector>
 
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -161,13 +153,12 @@ void print_list() {
 }
 
 Json triad_json(const TriadErrorModel& triad, const std::string& unit) {
-  Json json{{"bias_sigma_" + unit, triad.bias_sigma},
-            {"in_run_sigma_" + unit, triad.in_run.sigma},
-            {"in_run_tau_s", triad.in_run.tau_s},
-            {"noise_" + unit + "_per_sqrt_hz", triad.noise_density},
-            {"scale_sigma", triad.scale_sigma},
-            {"misalignment_sigma_rad", triad.misalignment_sigma_rad}};
-  return json;
+  return {{"bias_sigma_" + unit, triad.bias_sigma},
+          {"in_run_sigma_" + unit, triad.in_run.sigma},
+          {"in_run_tau_s", triad.in_run.tau_s},
+          {"noise_" + unit + "_per_sqrt_hz", triad.noise_density},
+          {"scale_sigma", triad.scale_sigma},
+          {"misalignment_sigma_rad", triad.misalignment_sigma_rad}};
 }
 
 Json class_json(const ImuErrorModel& model) {

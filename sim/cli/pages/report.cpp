@@ -1,10 +1,7 @@
 #include "sim/cli/pages/report.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cctype>
-#include <string>
 
 #include "sim/cli/output.hpp"
 #include "sim/report/report_template.hpp"

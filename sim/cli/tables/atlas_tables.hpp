@@ -2,12 +2,8 @@
 /// What leeway atlas writes.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/atlas/atlas_expected.hpp"
-#include "sim/cli/json.hpp"
+#include "sim/cli/answer.hpp"
 
 namespace leeway::cli {
 

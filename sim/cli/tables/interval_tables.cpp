@@ -1,20 +1,12 @@
 #include "sim/cli/tables/interval_tables.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "leeway/sim/sensors/bias_model.hpp"
-#include "sim/cli/answer.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
-
-using Outcome = sim::Interval::Outcome;
 
 /// Three significant digits, in seconds.
 std::string seconds(double s) {
@@ -23,15 +15,9 @@ std::string seconds(double s) {
 }
 
 std::string calibrated(const sim::Interval& answer) {
-  switch (answer.outcome) {
-    case Outcome::kNever:
-      return "none";
-    case Outcome::kAlways:
-      return "> " + seconds(answer.interval_s);
-    case Outcome::kSolved:
-      break;
-  }
-  return seconds(answer.interval_s);
+  if (answer.outcome == sim::Interval::Outcome::kNever) return "none";
+  const bool is_longer = answer.outcome == sim::Interval::Outcome::kAlways;
+  return (is_longer ? "> " : "") + seconds(answer.interval_s);
 }
 
 std::string free_inertial(const sim::Interval& answer, double duration_s) {
@@ -108,7 +94,7 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
   fmt::print("\nThe filter claims up to x{:.2f} the error that it makes.\n", pessimism);
 }
 
-std::string verdict(const Confirmation& c) {
+std::string verdict(const sim::Confirmation& c) {
   if (c.consistent) return "consistent";
   const std::string by_monte_carlo =
       c.interval_s ? seconds(*c.interval_s) + " s" : std::string("no interval found");
@@ -123,7 +109,7 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
   for (const SolvedImu& imu : solved) {
     for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
       if (!imu.confirmations[i]) continue;
-      const Confirmation& c = *imu.confirmations[i];
+      const sim::Confirmation& c = *imu.confirmations[i];
       const sim::CampaignResult& r = c.campaign;
       table.add({imu.scene.imu_name, fmt::format("{:g}", imu.intervals[i].limit_m),
                  seconds(imu.intervals[i].interval_s), std::to_string(r.trials),
@@ -167,7 +153,7 @@ Json imu_json(const sim::Scene& scene) {
   return {{"imu", scene.imu_name.substr(0, slash)}, {"range", range}};
 }
 
-Json confirm_json(const Confirmation& c) {
+Json confirm_json(const sim::Confirmation& c) {
   const sim::CampaignResult& r = c.campaign;
   return {{"trials", r.trials},
           {"rms_over_sigma", r.rms_over_sigma},
