@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace leeway::cli {
 namespace {
@@ -81,6 +82,20 @@ std::string matrix_entry(const sim::AtlasResult& result, sim::AtlasGroup group) 
                      with_unit(worst->figure, result.scene.unit));
 }
 
+/// The words in lines of at most 120 characters.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kLongest = 120;
+  std::string lines;
+  std::size_t length = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word; lines += word) {
+    const bool fits = length + 1 + word.size() <= kLongest;
+    if (length > 0) lines += fits ? ' ' : '\n';
+    length = length > 0 && fits ? length + 1 + word.size() : word.size();
+  }
+  return lines;
+}
+
 std::string markdown_row(const std::vector<std::string>& cells) {
   return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
@@ -132,9 +147,10 @@ std::string markdown_cell(const sim::AtlasResult& result, const std::string& var
 std::string markdown_scene(const sim::AtlasResult& result) {
   const sim::AtlasScene& scene = result.scene;
   const auto conditions = each_once(result, &sim::AtlasCell::condition);
-  std::string text = fmt::format("\n## {}\n\n`{}`, [{}.md](atlas/{}.md). Figure: {}; {}.\n\n",
-                                 scene.title, scene.key, scene.key, scene.key,
-                                 figure_heading(scene, scene.figure), limits_text(scene));
+  std::string text = fmt::format("\n## {}\n\n", scene.title);
+  text += wrapped(fmt::format("`{}`, [{}.md](atlas/{}.md). Figure: {}; {}.", scene.key, scene.key,
+                              scene.key, figure_heading(scene, scene.figure), limits_text(scene)));
+  text += "\n\n";
   std::vector<std::string> head{"variant"};
   head.insert(head.end(), conditions.begin(), conditions.end());
   text += markdown_head(head);
@@ -200,15 +216,16 @@ Json atlas_json(const std::vector<sim::AtlasResult>& results,
 }
 
 std::string atlas_markdown(const std::vector<sim::AtlasResult>& results) {
-  std::string text =
-      "# The failure atlas\n\n"
+  std::string text = "# The failure atlas\n\n";
+  text += wrapped(
       "Scenes that are each built to break a method, run against every way of running the filter. "
-      "Written by `leeway atlas --markdown docs/atlas.md`;\nthe verdicts are checked by the tests. "
-      "A figure is the larger the worse. In the matrix: the worst of each group of variants. "
-      "*Not offered* are\nmethods that the library does not have: they are what a scene shows "
-      "failing. Every variant that the library offers and that fails is reported by\none of its "
-      "detectors, in brackets.\n\n";
-  text += markdown_matrix(results);
+      "Written by `leeway atlas --markdown docs/atlas.md`; the verdicts are checked by the tests. "
+      "A figure is the larger the worse. In the matrix: the worst of each group of variants. *Not "
+      "offered* are methods that the library does not have: they are what a scene shows failing. "
+      "Every variant that the library offers and that fails is reported by one of its detectors, "
+      "in "
+      "brackets.");
+  text += "\n\n" + markdown_matrix(results);
   for (const sim::AtlasResult& result : results) text += markdown_scene(result);
   return text;
 }
