@@ -24,6 +24,11 @@ bool parse_numbers(std::string_view text, double* values, int count) {
   return at == end;
 }
 
+NamedImu part_named(const std::string& name) {
+  const sim::ImuPart& part = sim::imu_part(name);
+  return {std::string(part.name), sim::imu_model(part)};
+}
+
 CLI::Validator within(const Range& range, const char* otherwise) {
   return {[=](std::string& text) {
             double value = 0.0;
@@ -96,13 +101,15 @@ NamedImu imu_of(const ImuChoice& choice) {
   if (!choice.model_file.empty()) {
     return {choice.model_file.string(), sim::read_imu_model(choice.model_file)};
   }
-  if (!choice.part.empty()) {
-    const sim::ImuPart& part = sim::imu_part(choice.part);
-    return {std::string(part.name), sim::imu_model(part)};
-  }
-  if (choice.name == kMems) return {choice.name, automotive_mems_model()};
-  const ImuClass imu = from_name<ImuClass>(choice.name).value();
-  return {fmt::format("{}/{}", name(imu), name(choice.range)), imu_class_model(imu, choice.range)};
+  return choice.part.empty() ? imu_named(choice.name, choice.range) : part_named(choice.part);
+}
+
+NamedImu imu_named(const std::string& name, RangeEnd range) {
+  if (name == kMems) return {name, automotive_mems_model()};
+  const auto imu = from_name<ImuClass>(name);
+  if (!imu) return part_named(name);
+  return {fmt::format("{}/{}", leeway::name(*imu), leeway::name(range)),
+          imu_class_model(*imu, range)};
 }
 
 }  // namespace leeway::cli

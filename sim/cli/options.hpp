@@ -80,4 +80,7 @@ struct NamedImu {
 /// @throws Error when the file is not a model or the part is not in the catalogue.
 NamedImu imu_of(const ImuChoice& choice);
 
+/// A class, which the range is of, or a part. @throws Error when it is neither.
+NamedImu imu_named(const std::string& name, RangeEnd range);
+
 }  // namespace leeway::cli

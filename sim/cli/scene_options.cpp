@@ -7,17 +7,9 @@
 namespace leeway::cli {
 namespace {
 
-/// A class, which --range is about, or a part of the catalogue.
-NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
-  ImuChoice imu;
-  if (is_imu_class(wanted)) {
-    imu.name = wanted;
-    imu.range = choice.range.value_or(imu.range);
-    return imu_of(imu);
-  }
-  imu.part = wanted;
+NamedImu imu_of_option(const std::string& wanted, RangeEnd range) {
   try {
-    return imu_of(imu);
+    return imu_named(wanted, range);
   } catch (const Error& error) {
     throw Error(fmt::format("--imu {}: no class (automotive-mems, {}) and no part: {}", wanted,
                             fmt::join(kNames<ImuClass>, ", "), error.what()));
@@ -116,7 +108,8 @@ std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
   const sim::Scene base = changed_scene(choice);
   std::vector<sim::Scene> scenes;
   for (const std::string& imu : choice.imus) {
-    scenes.push_back(with_imu(base, imu_named(imu, choice), choice.bias));
+    scenes.push_back(
+        with_imu(base, imu_of_option(imu, choice.range.value_or(RangeEnd::kMid)), choice.bias));
   }
   if (scenes.empty() && !choice.bias) scenes.push_back(base);
   if (scenes.empty()) scenes.push_back(with_imu(base, {base.imu_name, base.imu}, choice.bias));

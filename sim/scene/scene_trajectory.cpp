@@ -85,11 +85,10 @@ void read(TomlSection& section, CarDriveParameters& p) {
 }
 
 /// A motion without an end of its own.
-template <class Parameters>
-Trajectory endless(Trajectory (*make)(const Parameters&), TomlSection& section,
-                   std::optional<double> duration_s) {
+template <class Parameters, Trajectory (*make)(const Parameters&)>
+Trajectory endless(TomlSection& section, double duration_s) {
   Parameters p;
-  p.duration_s = duration_s.value_or(kDefaultDurationS);
+  p.duration_s = duration_s;
   set_origin(section, p.origin);
   read(section, p);
   return make(p);
@@ -177,27 +176,21 @@ Trajectory read_recorded(TomlSection& section, const std::filesystem::path& fold
   return trajectory;
 }
 
+// In the order of TrajectoryKind.
+constexpr std::array kEndless{
+    &endless<StaticParameters, static_trajectory>, &endless<StraightParameters, straight>,
+    &endless<CircleParameters, circle>, &endless<SquareLoopParameters, square_loop>,
+    &endless<CarDriveParameters, car_drive>};
+
 }  // namespace
 
 Trajectory read_trajectory(TomlSection& section, const std::filesystem::path& folder,
                            std::optional<double> duration_s) {
-  switch (section.required(section.choice<TrajectoryKind>("type"))) {
-    case TrajectoryKind::kStatic:
-      return endless(static_trajectory, section, duration_s);
-    case TrajectoryKind::kStraight:
-      return endless(straight, section, duration_s);
-    case TrajectoryKind::kCircle:
-      return endless(circle, section, duration_s);
-    case TrajectoryKind::kSquareLoop:
-      return endless(square_loop, section, duration_s);
-    case TrajectoryKind::kCar:
-      return endless(car_drive, section, duration_s);
-    case TrajectoryKind::kWaypoints:
-      return read_waypoints(section, duration_s);
-    case TrajectoryKind::kRecorded:
-      break;
-  }
-  return read_recorded(section, folder, duration_s);
+  const auto kind = section.required(section.choice<TrajectoryKind>("type"));
+  if (kind == TrajectoryKind::kWaypoints) return read_waypoints(section, duration_s);
+  if (kind == TrajectoryKind::kRecorded) return read_recorded(section, folder, duration_s);
+  return kEndless.at(static_cast<std::size_t>(kind))(section,
+                                                     duration_s.value_or(kDefaultDurationS));
 }
 
 }  // namespace leeway::sim

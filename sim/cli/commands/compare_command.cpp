@@ -21,10 +21,6 @@ struct CompareChoice {
   Output output{};
 };
 
-double nees_of(const sim::Accuracy& accuracy) {
-  return accuracy.has_claim ? accuracy.figures.mean_nees : std::numeric_limits<double>::quiet_NaN();
-}
-
 /// Rows are numbered from 1.
 std::string number_of(const std::optional<std::size_t>& index) {
   return index ? fmt::format("#{}", *index + 1) : std::string();
@@ -64,7 +60,7 @@ Row row_of(const sim::Comparison& comparison, std::size_t index) {
           {"most", "cost_most_ns_per_s", c.cost.most_ns_per_s},
           {"RMS, m", "rms_horizontal_m", r.rms_horizontal_m, 4},
           {"R95, m", "r95_m", c.accuracy.r95_m, 4},
-          {"NEES", "nees", nees_of(c.accuracy), 2},
+          {"NEES", "nees", c.accuracy.has_claim ? Json(r.mean_nees) : Json(), 2},
           {"", "nees_band", Json{r.nees_low, r.nees_high}},
           {"<consistency", "", outcome_of(c.accuracy)},
           {"", "consistency", name(sim::consistency_of(c.accuracy))},

@@ -8,29 +8,17 @@
 namespace leeway::cli {
 namespace {
 
-/// How far a replay has come, told by the span of its fixes.
-class ReplayProgress {
- public:
-  explicit ReplayProgress(const sim::ReplayInput& input)
-      : bar_(input.imu.parent_path().filename().string()) {
-    if (!bar_.visible() || !std::filesystem::is_regular_file(input.gnss)) return;
-    GnssLogReader gnss(input.gnss);
-    while (const auto fix = gnss.next()) {
-      if (!first_) first_ = fix->time;
-      last_ = fix->time;
-    }
+/// The times of the first fix and the last one, which tell how far a replay has come.
+std::pair<Time, Time> span_of(const std::filesystem::path& log) {
+  std::optional<Time> first;
+  Time last{};
+  GnssLogReader gnss(log);
+  while (const auto fix = gnss.next()) {
+    first = first.value_or(fix->time);
+    last = fix->time;
   }
-
-  void operator()(Time t) {
-    if (!first_ || last_ <= *first_) return;
-    bar_.show(to_seconds(t - *first_) / to_seconds(last_ - *first_));
-  }
-
- private:
-  Progress bar_;
-  std::optional<Time> first_{};
-  Time last_{};
-};
+  return {first.value_or(last), last};
+}
 
 /// Whether all that was asked for has an answer.
 bool is_answered(const FuseJob& job) {
@@ -49,9 +37,14 @@ void replay(FuseJob& job, NavigatorConfig config, FuseSeries* series) {
   writing([&] {
     // Unclosed, it leaves nothing: this only tells early whether the file can be created.
     if (!job.input.solution.empty()) CsvWriter(job.input.solution, {"t_s"});
-    ReplayProgress progress(job.input);
+    Progress bar(job.input.imu.parent_path().filename().string());
     sim::ReplayObserver observer = series ? series->observer() : sim::ReplayObserver{};
-    observer.progress = [&progress](Time t) { progress(t); };
+    if (bar.visible() && std::filesystem::is_regular_file(job.input.gnss)) {
+      observer.progress = [&bar, span = span_of(job.input.gnss)](Time t) {
+        const auto [first, last] = span;
+        if (first < last) bar.show(to_seconds(t - first) / to_seconds(last - first));
+      };
+    }
     job.result = sim::replay(job.input, config, observer);
   });
 }

@@ -31,22 +31,13 @@ bool is_file(const std::string& name) {
 }
 
 Shown shown(const ShownChoice& options) {
-  ImuChoice choice;
-  choice.range = options.range;
-  if (is_imu_class(options.name)) {
-    choice.name = options.name;
-  } else if (is_file(options.name)) {
-    choice.model_file = options.name;
-  } else {
-    choice.part = options.name;
-  }
-  Shown s{imu_of(choice)};
-  if (choice.part.empty()) {
-    s.values = sim::datasheet_values(s.imu.model);
-  } else {
-    s.part = &sim::imu_part(choice.part);
-    s.values.assign(s.part->values.begin(), s.part->values.end());
-  }
+  const std::string& name = options.name;
+  const bool is_class = is_imu_class(name);
+  const bool is_part = !is_class && !is_file(name);
+  Shown s{is_class || is_part ? imu_named(name, options.range) : imu_of({.model_file = name})};
+  if (is_part) s.part = &sim::imu_part(name);
+  s.values = is_part ? std::vector(s.part->values.begin(), s.part->values.end())
+                     : sim::datasheet_values(s.imu.model);
   return s;
 }
 

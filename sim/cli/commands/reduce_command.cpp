@@ -17,10 +17,6 @@ struct ReduceChoice {
   Output output{};
 };
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double cost_of(const sim::TermWorth& term) { return term.cost ? term.cost->median_ns_per_s : kNan; }
-
 std::string remark(const sim::TermWorth& term, double limit_m) {
   if (!std::isfinite(term.predicted_m)) return "P not positive";
   return sim::agrees(term, limit_m) ? "" : "apart";
@@ -47,7 +43,7 @@ Row row_of(const sim::TermWorth& term, double limit_m) {
           {"<remark", "", remark(term, limit_m)},
           {"", "agrees", sim::agrees(term, limit_m)},
           {"diverged", "trials_diverged", term.diverged},
-          {"cost, ns/s", "cost_ns_per_s", cost_of(term)},
+          {"cost, ns/s", "cost_ns_per_s", term.cost ? Json(term.cost->median_ns_per_s) : Json()},
           {"<in the reduced model", "",
            !term.cost     ? "unmodelled"
            : term.is_kept ? "kept"

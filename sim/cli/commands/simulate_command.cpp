@@ -20,11 +20,8 @@ struct SceneLog {
   std::int64_t rows{0};
 };
 
-struct SceneLogs {
-  SceneLog imu{};
-  SceneLog gnss{};
-  SceneLog truth{};
-};
+/// Of the IMU, the receiver and the truth.
+using SceneLogs = std::array<SceneLog, 3>;
 
 /// A single-frequency code receiver under open sky.
 struct GnssOptions {
@@ -113,10 +110,11 @@ Json input_json(const SimulateChoice& options, const sim::Scene& scene) {
 }
 
 Json results_json(const SceneLogs& logs, const std::filesystem::path& description) {
-  return {{"imu", logs.imu.file.string()},     {"gnss", logs.gnss.file.string()},
-          {"truth", logs.truth.file.string()}, {"scene", description.string()},
-          {"imu_increments", logs.imu.rows},   {"gnss_fixes", logs.gnss.rows},
-          {"truth_rows", logs.truth.rows}};
+  const auto& [imu, gnss, truth] = logs;
+  return {{"imu", imu.file.string()},     {"gnss", gnss.file.string()},
+          {"truth", truth.file.string()}, {"scene", description.string()},
+          {"imu_increments", imu.rows},   {"gnss_fixes", gnss.rows},
+          {"truth_rows", truth.rows}};
 }
 
 /// Number of steps of 1 / rate that fit, forgiving the rounding of their product.
@@ -174,21 +172,19 @@ SceneLogs write_logs(const SimulateChoice& options, const sim::Scene& scene) {
   if (error) throw Error(options.out.string() + ": cannot be made: " + error.message());
   const std::string end = options.gzip ? ".csv.gz" : ".csv";
   const std::uint64_t seed = seed_of(options, scene);
-  return {.imu = write_imu(options.out / ("imu" + end), scene, seed),
-          .gnss = write_gnss(options.out / ("gnss" + end), scene, seed),
-          .truth = write_truth(options.out / ("truth" + end), scene, options.truth_rate_hz)};
+  return {write_imu(options.out / ("imu" + end), scene, seed),
+          write_gnss(options.out / ("gnss" + end), scene, seed),
+          write_truth(options.out / ("truth" + end), scene, options.truth_rate_hz)};
 }
 
 void print_tables(const SimulateChoice& options, const sim::Scene& scene, const SceneLogs& logs) {
   fmt::print("Simulated {} s of '{}' into {}\n", scene.duration_s, scene.name,
              options.out.string());
   Table table({"<log", "rows", "<file"});
-  const auto add = [&table](const char* what, const SceneLog& log) {
-    table.add({what, std::to_string(log.rows), log.file.string()});
-  };
-  add("IMU increments", logs.imu);
-  add("GNSS fixes", logs.gnss);
-  add("truth", logs.truth);
+  constexpr std::array kTitles{"IMU increments", "GNSS fixes", "truth"};
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    table.add({kTitles[i], std::to_string(logs[i].rows), logs[i].file.string()});
+  }
   table.print();
   if (scene.gnss.latency_s > 0.0) {
     fmt::print("Fixes have the time they are valid at; the scene delivers them {} s later.\n",
