@@ -48,21 +48,19 @@ struct SimulateChoice {
   Output output{};
 };
 
-using Factory = std::function<sim::Trajectory(double duration_s)>;
-
-template <class Parameters>
-Factory factory(sim::Trajectory (*make)(const Parameters&)) {
-  return [make](double duration_s) {
-    Parameters parameters;
-    parameters.duration_s = duration_s;
-    return make(parameters);
-  };
+template <class Parameters, sim::Trajectory (*make)(const Parameters&)>
+sim::Trajectory lasting(double duration_s) {
+  Parameters parameters;
+  parameters.duration_s = duration_s;
+  return make(parameters);
 }
 
 // In the order of TrajectoryKind; the rest of them need a scene file.
-const std::array<Factory, 5> kFactories{factory(sim::static_trajectory), factory(sim::straight),
-                                        factory(sim::circle), factory(sim::square_loop),
-                                        factory(sim::car_drive)};
+constexpr std::array kFactories{&lasting<sim::StaticParameters, sim::static_trajectory>,
+                                &lasting<sim::StraightParameters, sim::straight>,
+                                &lasting<sim::CircleParameters, sim::circle>,
+                                &lasting<sim::SquareLoopParameters, sim::square_loop>,
+                                &lasting<sim::CarDriveParameters, sim::car_drive>};
 
 sim::Scene scene_from_options(const SimulateChoice& options) {
   const NamedImu imu = imu_of(options.imu);
