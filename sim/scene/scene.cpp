@@ -1,8 +1,5 @@
 #include "leeway/sim/scene/scene.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "leeway/earth/error.hpp"
 #include "lib/earth/field_walk.hpp"
 

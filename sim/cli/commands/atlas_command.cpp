@@ -45,10 +45,7 @@ int run(const AtlasChoice& options) {
   const Json answer =
       answer_json("atlas", {{"scenes", options.scenes}, {"short", options.atlas.brief}},
                   atlas_json(results, surprises));
-  show(options.output, answer, [&] {
-    print_atlas(results);
-    print_atlas_findings(results, surprises);
-  });
+  show(options.output, answer, [&] { print_atlas(results, surprises); });
   if (!options.csv.empty()) write_file(options.csv, sim::atlas_csv(results, options.atlas));
   if (!options.markdown.empty()) write_file(options.markdown, atlas_markdown(results));
   return surprises.empty() && !any_silent(results) ? kSuccess : kNoAnswer;

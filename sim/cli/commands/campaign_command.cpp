@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <thread>
 
 #include "leeway/sim/sensors/imu_simulator.hpp"

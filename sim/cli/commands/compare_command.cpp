@@ -1,6 +1,3 @@
-#include <spdlog/fmt/ranges.h>
-
-#include <algorithm>
 #include <cmath>
 
 #include "leeway/sim/compare/compare.hpp"
@@ -145,9 +142,7 @@ int run(const CompareChoice& options) {
        answer_json("compare", timed_input_json(comparison.scene, repeat),
                    comparison_json(comparison)),
        [&] { print_comparison(comparison, repeat); });
-  const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
-                               [](const sim::Compared& c) { return c.on_front; });
-  return any ? kSuccess : kNoAnswer;
+  return std::ranges::any_of(comparison.variants, &sim::Compared::on_front) ? kSuccess : kNoAnswer;
 }
 
 void add_options(CLI::App& app, CompareChoice& options) {

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "leeway/sim/trials/drift.hpp"

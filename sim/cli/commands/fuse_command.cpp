@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "leeway/logs/csv_writer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/pages/fuse_series.hpp"

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "leeway/sim/sensors/imu_catalogue.hpp"
@@ -26,14 +25,11 @@ struct Shown {
   std::vector<DatasheetValue> values{};
 };
 
-bool is_file(const std::string& name) {
-  return name.ends_with(".toml") || std::filesystem::exists(name);
-}
-
 Shown shown(const ShownChoice& options) {
   const std::string& name = options.name;
   const bool is_class = is_imu_class(name);
-  const bool is_part = !is_class && !is_file(name);
+  const bool is_file = name.ends_with(".toml") || std::filesystem::exists(name);
+  const bool is_part = !is_class && !is_file;
   Shown s{is_class || is_part ? imu_named(name, options.range) : imu_of({.model_file = name})};
   if (is_part) s.part = &sim::imu_part(name);
   s.values = is_part ? std::vector(s.part->values.begin(), s.part->values.end())

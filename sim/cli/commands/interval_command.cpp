@@ -1,8 +1,6 @@
 #include <spdlog/fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "sim/cli/command.hpp"
 #include "sim/cli/pages/series_table.hpp"

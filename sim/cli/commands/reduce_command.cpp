@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "leeway/sim/reduce/model_reduction.hpp"
@@ -107,13 +106,6 @@ void print_verdict(const sim::ModelReduction& reduction) {
       r.nees_high);
 }
 
-void print_reduction(const sim::ModelReduction& reduction, int repeat) {
-  print_conditions(reduction, repeat);
-  print_terms(reduction);
-  print_models(reduction);
-  print_verdict(reduction);
-}
-
 Json reduction_json(const sim::ModelReduction& reduction) {
   const double limit_m = reduction.scene.limit.limit_m;
   Json results{{"limit_m", limit_m}, {"terms", Json::array()}};
@@ -152,7 +144,12 @@ int run(const ReduceChoice& options) {
   const int repeat = options.reduction.repeat;
   show(options.output,
        answer_json("reduce", timed_input_json(reduction.scene, repeat), reduction_json(reduction)),
-       [&] { print_reduction(reduction, repeat); });
+       [&] {
+         print_conditions(reduction, repeat);
+         print_terms(reduction);
+         print_models(reduction);
+         print_verdict(reduction);
+       });
   if (!reduction.keeps_limit || !reduction.is_as_honest) return kNoAnswer;
   if (!options.write.empty()) {
     const sim::Scene cheap = sim::with_model(reduction.scene, reduction.reduced.model);

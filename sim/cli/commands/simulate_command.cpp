@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cmath>
-
 #include "leeway/logs/gnss_log.hpp"
 #include "leeway/logs/imu_log.hpp"
 #include "leeway/logs/truth_log.hpp"

@@ -174,10 +174,6 @@ void print_atlas_list() {
   table.print();
 }
 
-void print_atlas(const std::vector<sim::AtlasResult>& results) {
-  for (const sim::AtlasResult& result : results) print_scene(result);
-}
-
 bool any_silent(const std::vector<sim::AtlasResult>& results) {
   return std::any_of(results.begin(), results.end(), [](const sim::AtlasResult& result) {
     return std::any_of(result.cells.begin(), result.cells.end(), [&result](const auto& cell) {
@@ -186,8 +182,9 @@ bool any_silent(const std::vector<sim::AtlasResult>& results) {
   });
 }
 
-void print_atlas_findings(const std::vector<sim::AtlasResult>& results,
-                          const std::vector<sim::AtlasSurprise>& surprises) {
+void print_atlas(const std::vector<sim::AtlasResult>& results,
+                 const std::vector<sim::AtlasSurprise>& surprises) {
+  for (const sim::AtlasResult& result : results) print_scene(result);
   if (any_silent(results)) {
     fmt::print("\nVariants of the library that fail, and no detector says so: see NOTHING above\n");
   }

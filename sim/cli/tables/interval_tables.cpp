@@ -1,6 +1,5 @@
 #include "sim/cli/tables/interval_tables.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "sim/cli/scene_options.hpp"

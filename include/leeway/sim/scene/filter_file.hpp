@@ -3,10 +3,6 @@
 /// scene file. docs/guide/scenes.md lists them.
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <string_view>
-
 #include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::sim {

@@ -2,11 +2,7 @@
 /// A GNSS receiver in a scene: its error model, and now and then an outlier.
 #pragma once
 
-#include <cstdint>
-
 #include "leeway/sim/scene/scene.hpp"
-#include "leeway/sim/sensors/gnss_simulator.hpp"
-#include "leeway/sim/tools/random.hpp"
 
 namespace leeway::sim {
 

@@ -3,16 +3,9 @@
 /// receiver really do, what the filter believes, and the error that is allowed.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "leeway/earth/fields.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/model/initial_covariance.hpp"
-#include "leeway/sim/motion/trajectory.hpp"
 #include "leeway/sim/scene/outage.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"
 

@@ -2,12 +2,6 @@
 /// Scenes as TOML files: docs/guide/scenes.md has the sections, keys, units, ranges and defaults.
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::sim {
