@@ -142,14 +142,12 @@ void print_how(const std::vector<SolvedImu>& solved) {
 }
 
 /// "tactical/mid" is a class and where in its range; anything else is a name alone.
-Json imu_json(const sim::Scene& scene) {
-  const std::size_t slash = scene.imu_name.rfind('/');
-  const std::string range =
-      slash == std::string::npos ? std::string() : scene.imu_name.substr(slash + 1);
-  if (range != "low" && range != "mid" && range != "high") {
-    return {{"imu", scene.imu_name}, {"range", nullptr}};
+Json imu_json(const std::string& imu) {
+  const std::size_t slash = imu.rfind('/');
+  if (slash == imu.npos || !from_name<RangeEnd>(imu.substr(slash + 1))) {
+    return {{"imu", imu}, {"range", nullptr}};
   }
-  return {{"imu", scene.imu_name.substr(0, slash)}, {"range", range}};
+  return {{"imu", imu.substr(0, slash)}, {"range", imu.substr(slash + 1)}};
 }
 
 Json confirm_json(const sim::Confirmation& c) {
@@ -187,7 +185,7 @@ Json interval_json(const std::vector<SolvedImu>& solved) {
     for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
       const sim::Interval& a = imu.intervals[i];
       const bool asked = !imu.confirmations.empty() && imu.confirmations[i];
-      Json row = imu_json(imu.scene);
+      Json row = imu_json(imu.scene.imu_name);
       row["motion"] = imu.scene.trajectory.name;
       row["bias_model"] = name(sim::bias_model_of(imu.scene.imu));
       row["metric"] = name(imu.scene.limit.metric);
