@@ -2,11 +2,10 @@
 /// The commands of the program. A file in commands/ that defines a Command is all that one takes.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
 #include <map>
 #include <memory>
-#include <string>
+
+#include "sim/cli/answer.hpp"
 
 namespace leeway::cli {
 
@@ -46,5 +45,9 @@ struct Command {
     };
   }
 };
+
+/// The words of a command line, with the names of today in place of those that commands and options
+/// had in earlier versions. A note on stderr tells of each old one.
+std::vector<std::string> with_new_names(std::vector<std::string> words);
 
 }  // namespace leeway::cli

@@ -1,4 +1,3 @@
-#include <spdlog/fmt/fmt.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -6,14 +5,9 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "leeway/sim/tools/ranks.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/old_names.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/pages/report.hpp"
 #include "sim/tools/closest_name.hpp"
 

@@ -1,10 +1,4 @@
-#include "sim/cli/old_names.hpp"
-
-#include <spdlog/fmt/fmt.h>
-
-#include <string_view>
-
-#include "sim/cli/output.hpp"
+#include "sim/cli/command.hpp"
 
 namespace leeway::cli {
 namespace {

@@ -1,15 +1,10 @@
 #include "sim/cli/options.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <string_view>
 
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
 #include "leeway/sim/sensors/imu_model_file.hpp"
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -27,6 +22,20 @@ bool parse_numbers(std::string_view text, double* values, int count) {
     at = next;
   }
   return at == end;
+}
+
+NamedImu part_named(const std::string& name) {
+  const sim::ImuPart& part = sim::imu_part(name);
+  return {std::string(part.name), sim::imu_model(part)};
+}
+
+CLI::Validator within(const Range& range, const char* otherwise) {
+  return {[=](std::string& text) {
+            double value = 0.0;
+            const bool is_within = parse_numbers(text, &value, 1) && range.contains(value);
+            return is_within ? std::string() : text + otherwise;
+          },
+          ""};
 }
 
 }  // namespace
@@ -51,36 +60,17 @@ template CLI::Option* add_numbers<2>(CLI::App&, const std::string&, const std::s
 template CLI::Option* add_numbers<3>(CLI::App&, const std::string&, const std::string&,
                                      std::optional<Eigen::Vector3d>&, const std::string&);
 
-CLI::Validator positive() {
-  return {[](std::string& text) {
-            double value = 0.0;
-            return parse_numbers(text, &value, 1) && value > 0.0 ? "" : text + " is not above 0";
-          },
-          ""};
-}
+CLI::Validator positive() { return within(kPositive, " is not above 0"); }
 
-CLI::Validator not_negative() {
-  return {[](std::string& text) {
-            double value = 0.0;
-            return parse_numbers(text, &value, 1) && value >= 0.0 ? "" : text + " is below 0";
-          },
-          ""};
-}
+CLI::Validator not_negative() { return within(kNotNegative, " is below 0"); }
 
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what) {
-  app.add_option("--threads", threads, of_what + "0: all processors")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  add_default_option(app, "--threads", threads, of_what + "0: all processors")
+      ->check(CLI::Range(0, 1024));
 }
 
 void add_repeat_option(CLI::App& app, int& repeat) {
-  app.add_option("--repeat", repeat, "timed runs of each")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-}
-
-void note_spelling(const std::string& word, std::string_view name) {
-  if (word != name) note(fmt::format("{} is now written {}", word, name));
+  add_default_option(app, "--repeat", repeat, "timed runs of each")->check(CLI::Range(1, 1000));
 }
 
 bool is_imu_class(const std::string& imu) { return imu == kMems || from_name<ImuClass>(imu); }
@@ -89,11 +79,10 @@ void add_imu_options(CLI::App& app, ImuChoice& choice) {
   std::vector<std::string> names(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
   names.emplace(names.begin(), kMems);
   CLI::Option* by_class =
-      app.add_option("--imu-class", choice.name,
-                     "IMU error model: a car-grade MEMS part, or a class of the source paper's "
-                     "Table 1")
-          ->check(CLI::IsMember(names))
-          ->capture_default_str();
+      add_default_option(app, "--imu-class", choice.name,
+                         "IMU error model: a car-grade MEMS part, or a class of the source "
+                         "paper's Table 1")
+          ->check(CLI::IsMember(names));
   CLI::Option* range = add_range_option(app, choice.range)->needs(by_class);
   CLI::Option* by_part =
       app.add_option("--imu-part", choice.part,
@@ -101,9 +90,8 @@ void add_imu_options(CLI::App& app, ImuChoice& choice) {
           ->type_name("NAME")
           ->excludes(by_class)
           ->excludes(range);
-  app.add_option("--imu-model", choice.model_file,
-                 "IMU error model from a TOML file (docs/guide/cli.md lists its keys)")
-      ->type_name("FILE")
+  add_file_option(app, "--imu-model", choice.model_file,
+                  "IMU error model from a TOML file (docs/guide/cli.md lists its keys)")
       ->excludes(by_class)
       ->excludes(range)
       ->excludes(by_part);
@@ -113,13 +101,15 @@ NamedImu imu_of(const ImuChoice& choice) {
   if (!choice.model_file.empty()) {
     return {choice.model_file.string(), sim::read_imu_model(choice.model_file)};
   }
-  if (!choice.part.empty()) {
-    const sim::ImuPart& part = sim::imu_part(choice.part);
-    return {std::string(part.name), sim::imu_model(part)};
-  }
-  if (choice.name == kMems) return {choice.name, automotive_mems_model()};
-  const ImuClass imu = from_name<ImuClass>(choice.name).value();
-  return {fmt::format("{}/{}", name(imu), name(choice.range)), imu_class_model(imu, choice.range)};
+  return choice.part.empty() ? imu_named(choice.name, choice.range) : part_named(choice.part);
+}
+
+NamedImu imu_named(const std::string& name, RangeEnd range) {
+  if (name == kMems) return {name, automotive_mems_model()};
+  const auto imu = from_name<ImuClass>(name);
+  if (!imu) return part_named(name);
+  return {fmt::format("{}/{}", leeway::name(*imu), leeway::name(range)),
+          imu_class_model(*imu, range)};
 }
 
 }  // namespace leeway::cli

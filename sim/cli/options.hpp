@@ -2,20 +2,12 @@
 /// Options that more than one command has.
 #pragma once
 
-#include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-#include <Eigen/Core>
-#include <filesystem>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 
-#include "leeway/earth/names.hpp"
 #include "leeway/sensors/imu_class.hpp"
-#include "leeway/sensors/imu_error_model.hpp"
+#include "sim/cli/answer.hpp"
 
 namespace leeway::cli {
 
@@ -38,10 +30,8 @@ void add_threads_option(CLI::App& app, int& threads, const std::string& of_what 
 /// --repeat, of commands that measure time.
 void add_repeat_option(CLI::App& app, int& repeat);
 
-/// Says on stderr that a word is an old spelling of a name, if it is one.
-void note_spelling(const std::string& word, std::string_view name);
-
-/// Takes a word for the enumerator that it names, one of the first `count`.
+/// Takes a word for the enumerator that it names, one of the first `count`. A note on stderr tells
+/// of an old spelling.
 template <NamedEnum Enum>
 CLI::Validator named(std::size_t count = kAll<Enum>.size()) {
   const auto words = std::span(kNames<Enum>).first(count);
@@ -50,7 +40,7 @@ CLI::Validator named(std::size_t count = kAll<Enum>.size()) {
     const std::optional<Enum> value = from_name<Enum>(word);
     const auto index = static_cast<std::size_t>(value.value_or(Enum{}));
     if (!value || index >= count) return fmt::format("{} not in {}", word, accepted);
-    note_spelling(word, name(*value));
+    if (word != name(*value)) note(fmt::format("{} is now written {}", word, name(*value)));
     word = std::to_string(index);  // as CLI11 reads an enum
     return std::string();
   };
@@ -89,5 +79,8 @@ struct NamedImu {
 
 /// @throws Error when the file is not a model or the part is not in the catalogue.
 NamedImu imu_of(const ImuChoice& choice);
+
+/// A class, which the range is of, or a part. @throws Error when it is neither.
+NamedImu imu_named(const std::string& name, RangeEnd range);
 
 }  // namespace leeway::cli

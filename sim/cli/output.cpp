@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
 #include <set>
 #include <system_error>
 
@@ -27,17 +26,11 @@ bool shows_colour() {
 }
 
 fmt::text_style style_of(Tone tone) {
-  switch (tone) {
-    case Tone::kGood:
-      return fmt::fg(fmt::terminal_color::green);
-    case Tone::kDoubtful:
-      return fmt::fg(fmt::terminal_color::yellow);
-    case Tone::kBad:
-      return fmt::fg(fmt::terminal_color::red);
-    case Tone::kPlain:
-      break;
-  }
-  return {};
+  if (tone == Tone::kPlain) return {};
+  using Color = fmt::terminal_color;
+  return fmt::fg(tone == Tone::kGood       ? Color::green
+                 : tone == Tone::kDoubtful ? Color::yellow
+                                           : Color::red);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 /// What the commands write: tables, whole files, notes, a progress bar.
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
 #include <chrono>
 #include <filesystem>
 #include <optional>

@@ -1,32 +1,15 @@
 #include "sim/cli/scene_options.hpp"
 
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
-
-#include <limits>
-
-#include "leeway/earth/error.hpp"
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
 #include "leeway/sim/scene/scene_file.hpp"
-#include "leeway/sim/sensors/bias_model.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
 
-/// A class, which --range is about, or a part of the catalogue.
-NamedImu imu_named(const std::string& wanted, const SceneChoice& choice) {
-  ImuChoice imu;
-  if (is_imu_class(wanted)) {
-    imu.name = wanted;
-    imu.range = choice.range.value_or(imu.range);
-    return imu_of(imu);
-  }
-  imu.part = wanted;
+NamedImu imu_of_option(const std::string& wanted, RangeEnd range) {
   try {
-    return imu_of(imu);
+    return imu_named(wanted, range);
   } catch (const Error& error) {
     throw Error(fmt::format("--imu {}: no class (automotive-mems, {}) and no part: {}", wanted,
                             fmt::join(kNames<ImuClass>, ", "), error.what()));
@@ -77,8 +60,8 @@ sim::Scene scene_from_file(const std::filesystem::path& file, std::optional<doub
 }
 
 void add_scene_options(CLI::App& app, SceneChoice& choice) {
-  app.add_option("--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)")
-      ->type_name("FILE.toml")
+  add_file_option(app, "--scene", choice.file, "scene file (docs/guide/scenes.md lists its keys)",
+                  "FILE.toml")
       ->required();
   app.add_option("--imu", choice.imus,
                  "IMU in place of the scene's, for truth and filter: marine, aviation, "
@@ -91,10 +74,11 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
                  "what the biases of a Table 1 class do after turn-on: stay, or wander with a "
                  "correlation time of an hour")
       ->transform(named<sim::BiasModel>());
-  app.add_option("--filter", choice.filter,
-                 "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
-                 "--write made")
-      ->type_name("FILE.toml");
+  add_file_option(
+      app, "--filter", choice.filter,
+      "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
+      "--write made",
+      "FILE.toml");
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->transform(named<HorizontalMetric>());
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
@@ -124,7 +108,8 @@ std::vector<sim::Scene> scenes_of(const SceneChoice& choice) {
   const sim::Scene base = changed_scene(choice);
   std::vector<sim::Scene> scenes;
   for (const std::string& imu : choice.imus) {
-    scenes.push_back(with_imu(base, imu_named(imu, choice), choice.bias));
+    scenes.push_back(
+        with_imu(base, imu_of_option(imu, choice.range.value_or(RangeEnd::kMid)), choice.bias));
   }
   if (scenes.empty() && !choice.bias) scenes.push_back(base);
   if (scenes.empty()) scenes.push_back(with_imu(base, {base.imu_name, base.imu}, choice.bias));

@@ -2,17 +2,9 @@
 /// Which scene a command is about: a file, and what the command line changes in it.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
-#include "sim/cli/json.hpp"
-#include "sim/cli/output.hpp"
+#include "sim/cli/answer.hpp"
 
 namespace leeway::cli {
 

@@ -2,11 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <array>
-#include <type_traits>
+#include <sstream>
 
-#include "leeway/earth/error.hpp"
 #include "lib/earth/field_walk.hpp"
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
@@ -80,11 +77,8 @@ void read_filter_file(const std::filesystem::path& path, Scene& scene) {
 
 std::string filter_file(const Scene& scene, std::string_view comment) {
   std::string text;
-  while (!comment.empty()) {
-    const std::size_t end = comment.find('\n');
-    text += fmt::format("# {}\n", comment.substr(0, end));
-    comment.remove_prefix(end == comment.npos ? comment.size() : end + 1);
-  }
+  std::istringstream lines{std::string(comment)};
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   text += "[filter]\n";
   walk_fields(scene.filter, [&text](const FieldPath& path, const auto& value, const Range&) {
     using Value = std::remove_cvref_t<decltype(value)>;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "leeway/earth/error.hpp"
 

@@ -1,12 +1,6 @@
 #include "leeway/sim/scene/scene.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
-#include "leeway/model/initial_covariance.hpp"
 #include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {

@@ -2,11 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <limits>
-#include <string>
 #include <system_error>
 
-#include "leeway/earth/error.hpp"
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
 
@@ -20,9 +17,9 @@ constexpr std::int64_t kMostTrials = 1'000'000;
 /// A scene while it is read.
 class SceneReader {
  public:
-  SceneReader(std::filesystem::path folder, std::string name, std::optional<double> duration_s)
-      : folder_(std::move(folder)), wanted_duration_s_(duration_s), duration_s_(duration_s) {
-    scene_.name = std::move(name);
+  SceneReader(const std::filesystem::path& path, std::optional<double> duration_s)
+      : folder_(path.parent_path()), wanted_duration_s_(duration_s), duration_s_(duration_s) {
+    scene_.name = path.stem().string();
   }
 
   Scene read(TomlSection& root) {
@@ -54,8 +51,7 @@ class SceneReader {
     return scene_;
   }
 
-  /// Old names that the file uses.
-  const std::vector<std::string>& notes() const { return notes_; }
+  bool uses_old_name() const { return uses_old_name_; }
 
  private:
   static void require(TomlSection& root, std::string_view name, const TomlSection::Reader& read) {
@@ -78,14 +74,11 @@ class SceneReader {
   /// Older files call it [budget].
   void read_limit_section(TomlSection& root) {
     const auto read = [this](TomlSection& section) { scene_.limit = read_limit(section); };
-    if (!root.has("budget")) {
-      root.table("limit", read);
-      return;
-    }
-    if (root.has("limit"))
+    uses_old_name_ = root.has("budget");
+    if (uses_old_name_ && root.has("limit")) {
       root.fail_at("budget", "is the old name of [limit], also there: keep one");
-    root.table("budget", read);
-    notes_.emplace_back("[budget] is now called [limit]");
+    }
+    root.table(uses_old_name_ ? "budget" : "limit", read);
   }
 
   void require_step(const TomlSection& section) const {
@@ -108,7 +101,7 @@ class SceneReader {
   std::optional<double> wanted_duration_s_;
   std::optional<double> duration_s_;
   Scene scene_{};
-  std::vector<std::string> notes_{};
+  bool uses_old_name_{false};
 };
 
 Scene read(const TomlDocument& document, const std::filesystem::path& path,
@@ -117,12 +110,12 @@ Scene read(const TomlDocument& document, const std::filesystem::path& path,
     throw Error(
         fmt::format("the duration of a scene is {:.9g} s, must be 1 to 1e6 s", *duration_s));
   }
-  SceneReader reader(path.parent_path(), path.stem().string(), duration_s);
+  SceneReader reader(path, duration_s);
   Scene scene;
   document.read([&](TomlSection& root) { scene = reader.read(root); });
   validate(scene);
-  if (notes != nullptr) {
-    for (const std::string& note : reader.notes()) notes->push_back(path.string() + ": " + note);
+  if (notes != nullptr && reader.uses_old_name()) {
+    notes->push_back(path.string() + ": [budget] is now called [limit]");
   }
   return scene;
 }

@@ -3,11 +3,6 @@
 /// ranges; what is absent keeps the default of the struct it fills.
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <string>
-
-#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/tools/toml_reader.hpp"
 

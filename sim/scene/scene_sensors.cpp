@@ -1,12 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <array>
-#include <limits>
-#include <string>
-#include <string_view>
-
-#include "leeway/earth/error.hpp"
-#include "leeway/model/initial_covariance.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
@@ -70,16 +63,6 @@ NamedImuModel read_class(TomlSection& section, const std::string& wanted) {
   }
   const RangeEnd end = range.value_or(RangeEnd::kMid);
   return {fmt::format("{}/{}", name(*imu), name(end)), imu_class_model(*imu, end)};
-}
-
-/// What a key of the section names, read by f.
-template <class F>
-decltype(auto) usable(const TomlSection& section, std::string_view key, F&& f) {
-  try {
-    return f();
-  } catch (const Error& error) {
-    section.fail_at(key, std::string("cannot be used: ") + error.what());
-  }
 }
 
 NamedImuModel read_part(const TomlSection& section, const std::string& wanted) {

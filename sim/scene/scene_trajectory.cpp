@@ -1,12 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <array>
 #include <numbers>
-#include <string>
-#include <string_view>
 
-#include "leeway/earth/earth.hpp"
-#include "leeway/earth/error.hpp"
 #include "leeway/sim/motion/recorded_trajectory.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/motion/waypoints.hpp"
@@ -60,53 +55,43 @@ void require_lateral(const TomlSection& section, double lateral_mps2) {
       lateral_mps2));
 }
 
-Trajectory read_static(TomlSection& section, double duration_s) {
-  StaticParameters p;
-  p.duration_s = duration_s;
-  set_origin(section, p.origin);
+void read(TomlSection& section, StaticParameters& p) {
   set(section, kRoll, p.attitude.roll_rad);
   set(section, kPitch, p.attitude.pitch_rad);
   set(section, kHeading, p.attitude.yaw_rad);
-  return static_trajectory(p);
 }
 
-Trajectory read_straight(TomlSection& section, double duration_s) {
-  StraightParameters p;
-  p.duration_s = duration_s;
-  set_origin(section, p.origin);
+void read(TomlSection& section, StraightParameters& p) {
   set(section, kSpeed, p.ground_speed_mps);
   set(section, kClimb, p.climb_rate_mps);
   set(section, kHeading, p.heading_rad);
-  return straight(p);
 }
 
-Trajectory read_circle(TomlSection& section, double duration_s) {
-  CircleParameters p;
-  p.duration_s = duration_s;
-  set_origin(section, p.origin);
+void read(TomlSection& section, CircleParameters& p) {
   set(section, kSpeed, p.speed_mps);
   set(section, kRadius, p.radius_m);
   require_lateral(section, p.speed_mps * p.speed_mps / p.radius_m);
-  return circle(p);
 }
 
-Trajectory read_square_loop(TomlSection& section, double duration_s) {
-  SquareLoopParameters p;
-  p.duration_s = duration_s;
-  set_origin(section, p.origin);
+void read(TomlSection& section, SquareLoopParameters& p) {
   set(section, kSpeed, p.speed_mps);
   set(section, kStraight, p.straight_s);
   set(section, kTurn, p.turn_s);
   require_lateral(section, p.speed_mps * 0.25 * kFullTurnRad / p.turn_s);
-  return square_loop(p);
 }
 
-Trajectory read_car(TomlSection& section, double duration_s) {
-  CarDriveParameters p;
+void read(TomlSection& section, CarDriveParameters& p) {
+  set(section, kInitialRest, p.initial_rest_s);
+}
+
+/// A motion without an end of its own.
+template <class Parameters, Trajectory (*make)(const Parameters&)>
+Trajectory endless(TomlSection& section, double duration_s) {
+  Parameters p;
   p.duration_s = duration_s;
   set_origin(section, p.origin);
-  set(section, kInitialRest, p.initial_rest_s);
-  return car_drive(p);
+  read(section, p);
+  return make(p);
 }
 
 /// North and east in the origin's plane, taken down to the ellipsoid; down from the origin's
@@ -182,12 +167,7 @@ Trajectory read_recorded(TomlSection& section, const std::filesystem::path& fold
   set(section, kSmoothing, p.smoothing_s);
   set(section, kMaxGap, p.max_gap_s);
   set(section, kMinSpeed, p.min_speed_mps);
-  Trajectory trajectory;
-  try {
-    trajectory = recorded_trajectory(p);
-  } catch (const Error& error) {
-    section.fail_at("file", std::string("cannot be used: ") + error.what());
-  }
+  Trajectory trajectory = usable(section, "file", [&p] { return recorded_trajectory(p); });
   if (duration_s.value_or(0.0) > trajectory.duration_s) {
     section.fail_at("file", fmt::format("ends after {:.9g} s, before the scene's end at {:.9g} s",
                                         trajectory.duration_s, *duration_s));
@@ -197,8 +177,10 @@ Trajectory read_recorded(TomlSection& section, const std::filesystem::path& fold
 }
 
 // In the order of TrajectoryKind.
-constexpr std::array kEndless{&read_static, &read_straight, &read_circle, &read_square_loop,
-                              &read_car};
+constexpr std::array kEndless{
+    &endless<StaticParameters, static_trajectory>, &endless<StraightParameters, straight>,
+    &endless<CircleParameters, circle>, &endless<SquareLoopParameters, square_loop>,
+    &endless<CarDriveParameters, car_drive>};
 
 }  // namespace
 

@@ -3,7 +3,7 @@
 /// a value is out of range in its own unit, the reader names the other in which it would not be.
 #pragma once
 
-#include "leeway/earth/units.hpp"
+#include "leeway/earth/error.hpp"
 #include "sim/tools/toml_reader.hpp"
 
 namespace leeway::sim {
@@ -18,6 +18,16 @@ inline constexpr std::array<const Unit*, 4> kAccelerations{&units::kMps2, &units
 /// Leaves the field as it is where the key is absent.
 inline void set(TomlSection& section, const Quantity& quantity, double& field) {
   if (const auto value = section.number(quantity)) field = *value;
+}
+
+/// What a key of the section names, read by f, whose errors are those of the key.
+template <class F>
+decltype(auto) usable(const TomlSection& section, std::string_view key, F&& f) {
+  try {
+    return f();
+  } catch (const Error& error) {
+    section.fail_at(key, std::string("cannot be used: ") + error.what());
+  }
 }
 
 }  // namespace leeway::sim

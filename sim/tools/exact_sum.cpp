@@ -94,21 +94,20 @@ double ExactSum::rounded(const Limbs& magnitude) {
   if (top == 0) return 0.0;
   // The 64 bits from the leading one down; what lies below matters as being zero or not.
   std::uint64_t leading = magnitude[--top];
-  const int empty_bits = std::countl_zero(leading);
-  std::uint64_t rest = 0;
+  int exponent = kLowestExponent;
   if (top > 0) {
+    const int empty_bits = std::countl_zero(leading);
     const std::uint64_t next = magnitude[top - 1];
     leading <<= empty_bits;
     if (empty_bits > 0) leading |= next >> (kLimbBits - empty_bits);
-    rest = next << empty_bits;
+    std::uint64_t rest = next << empty_bits;
     for (std::size_t i = 0; i + 1 < top; ++i) rest |= magnitude[i];
     leading |= rest != 0 ? 1 : 0;
-    const int exponent = static_cast<int>(top) * kLimbBits - empty_bits + kLowestExponent;
-    // 64 bits to 53 by the conversion, to nearest even; above the subnormals ldexp is exact.
-    return std::ldexp(static_cast<double>(leading), exponent);
+    exponent += static_cast<int>(top) * kLimbBits - empty_bits;
   }
-  // Below 2^-1010 nothing lies beneath the lowest limb: rounded once by the conversion.
-  return std::ldexp(static_cast<double>(leading), kLowestExponent);
+  // 64 bits to 53 by the conversion, to nearest even; ldexp is exact. Below 2^-1010 nothing lies
+  // beneath the lowest limb.
+  return std::ldexp(static_cast<double>(leading), exponent);
 }
 
 }  // namespace leeway::sim

@@ -1,5 +1,8 @@
 #include "sim/tools/toml_reader.hpp"
 
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -19,34 +22,17 @@ bool contain(const Range& limits, double si) {
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLongest = 80;
-  return "'" + std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? ".." : "") + "'";
+  return fmt::format("'{}{}'", text.substr(0, kLongest), text.size() > kLongest ? ".." : "");
 }
 
-std::string key_of(const Quantity& quantity, const Unit* unit) {
-  std::string key(quantity.name);
-  if (unit != nullptr) key += "_" + std::string(unit->key);
-  return key;
-}
-
-std::string text_of(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-std::string joined(const std::vector<std::string>& words, std::string_view separator) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (!text.empty()) text += separator;
-    text += word;
-  }
-  return text;
+std::string key_of(const Quantity& quantity, const Unit& unit) {
+  return fmt::format("{}_{}", quantity.name, unit.key);
 }
 
 std::vector<std::string> keys_of(const Quantity& quantity) {
   std::vector<std::string> keys;
   for (const Unit* unit : quantity.units) {
-    if (unit != nullptr) keys.push_back(key_of(quantity, unit));
+    if (unit != nullptr) keys.push_back(key_of(quantity, *unit));
   }
   if (keys.empty()) keys.emplace_back(quantity.name);
   return keys;
@@ -54,18 +40,19 @@ std::vector<std::string> keys_of(const Quantity& quantity) {
 
 /// The limits in words, in a unit that is `si` in SI.
 std::string range_text(const Range& limits, double value, double si) {
-  const double high = limits.high / si;
   const double low = limits.low / si;
   if (limits.or_zero && value > 0.0 && value < low) {
-    return "must be 0, or at least " + text_of(low) + " like that of a real sensor";
+    return fmt::format("must be 0, or at least {:g} like that of a real sensor", low);
   }
-  return "must be a number from " + text_of(limits.or_zero ? 0.0 : low) + " to " + text_of(high);
+  return fmt::format("must be a number from {:g} to {:g}", limits.or_zero ? 0.0 : low,
+                     limits.high / si);
 }
 
 }  // namespace
 
 std::string likely_intent(const std::vector<std::string>& quoted_keys) {
-  return quoted_keys.empty() ? "" : "; did you mean " + joined(quoted_keys, " or ") + "?";
+  return quoted_keys.empty() ? ""
+                             : fmt::format("; did you mean {}?", fmt::join(quoted_keys, " or "));
 }
 
 std::size_t TomlValue::size() const { return is_array() ? node_->as_array()->size() : 0; }
@@ -76,21 +63,16 @@ std::optional<double> TomlValue::as_written() const {
   return {};
 }
 
-std::string TomlValue::text() const { return text_of(as_written().value_or(NAN)); }
+std::string TomlValue::text() const { return fmt::format("{:g}", as_written().value_or(NAN)); }
 
 double TomlValue::number(std::string_view otherwise) const {
   const double si = unit_ != nullptr ? unit_->si : 1.0;
   const std::optional<double> value = as_written();
-  if (!value) {
-    fail("has another type than wanted: " + range_text(quantity_.limits, NAN, si) +
-         std::string(otherwise));
-  }
-  if (!contain(quantity_.limits, *value * si)) {
-    const auto anything = [](double) { return true; };
-    fail("is " + text_of(*value) + ": " + range_text(quantity_.limits, *value, si) +
-         std::string(otherwise) + likely_intent(likely_keys(anything)));
-  }
-  return *value * si;
+  const std::string wanted = range_text(quantity_.limits, value.value_or(NAN), si);
+  if (!value) fail(fmt::format("has another type than wanted: {}{}", wanted, otherwise));
+  if (contain(quantity_.limits, *value * si)) return *value * si;
+  fail(fmt::format("is {:g}: {}{}{}", *value, wanted, otherwise,
+                   likely_intent(likely_keys([](double) { return true; }))));
 }
 
 std::vector<std::string> TomlValue::likely_keys(
@@ -100,15 +82,15 @@ std::vector<std::string> TomlValue::likely_keys(
   for (const Unit* unit : quantity_.units) {
     if (unit == nullptr || unit == unit_ || value == 0.0) continue;
     const double si = value * unit->si;
-    if (contain(quantity_.limits, si) && pleases(si))
-      keys.push_back(in_quotes(key_of(quantity_, unit)));
+    if (!contain(quantity_.limits, si) || !pleases(si)) continue;
+    keys.push_back(in_quotes(key_of(quantity_, *unit)));
   }
   return keys;
 }
 
 std::vector<TomlValue> TomlValue::entries(std::size_t count, std::string_view otherwise) const {
   if (!is_array() || size() != count) {
-    fail("must be " + std::to_string(count) + " entries" + std::string(otherwise));
+    fail(fmt::format("must be {} entries{}", count, otherwise));
   }
   std::vector<TomlValue> values;
   for (const toml::node& entry : *node_->as_array()) {
@@ -161,39 +143,32 @@ std::optional<TomlValue> TomlSection::value(const Quantity& quantity) {
 
 std::optional<double> TomlSection::number(const Quantity& quantity) {
   const auto found = value(quantity);
-  return found ? std::optional(found->number()) : std::nullopt;
+  if (!found) return {};
+  return found->number();
 }
 
-std::optional<std::vector<double>> TomlSection::numbers(const Quantity& quantity,
-                                                        std::size_t count) {
-  const auto found = value(quantity);
-  return found ? std::optional(found->numbers(count)) : std::nullopt;
+template <class T>
+std::optional<T> TomlSection::of_type(std::string_view key, const std::string& otherwise) {
+  const toml::node* node = declare(key);
+  if (node == nullptr) return {};
+  if (const toml::value<T>* value = node->as<T>()) return value->get();
+  fail_at(key, otherwise);
 }
 
 std::optional<std::int64_t> TomlSection::integer(std::string_view key, std::int64_t low,
                                                  std::int64_t high) {
-  const toml::node* node = declare(key);
-  if (node == nullptr) return {};
-  const auto wanted =
-      "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high);
-  if (!node->is_integer()) fail_at(key, wanted);
-  const std::int64_t value = node->as_integer()->get();
-  if (value < low || value > high) fail_at(key, "is " + std::to_string(value) + ": " + wanted);
-  return value;
+  const std::string wanted = fmt::format("must be a whole number from {} to {}", low, high);
+  const auto value = of_type<std::int64_t>(key, wanted);
+  if (!value || (*value >= low && *value <= high)) return value;
+  fail_at(key, fmt::format("is {}: {}", *value, wanted));
 }
 
 std::optional<bool> TomlSection::boolean(std::string_view key) {
-  const toml::node* node = declare(key);
-  if (node == nullptr) return {};
-  if (!node->is_boolean()) fail_at(key, "must be true or false");
-  return node->as_boolean()->get();
+  return of_type<bool>(key, "must be true or false");
 }
 
 std::optional<std::string> TomlSection::text(std::string_view key) {
-  const toml::node* node = declare(key);
-  if (node == nullptr) return {};
-  if (!node->is_string()) fail_at(key, "must be text in quotes");
-  return node->as_string()->get();
+  return of_type<std::string>(key, "must be text in quotes");
 }
 
 void TomlSection::fail_unknown_word(std::string_view key, std::string_view given,
@@ -201,13 +176,17 @@ void TomlSection::fail_unknown_word(std::string_view key, std::string_view given
   fail_at(key, "is unknown: " + in_quotes(given) + ": " + did_you_mean(given, accepted));
 }
 
+void TomlSection::read_table(const toml::table& table, std::string_view key, const Reader& read) {
+  TomlSection section(document_, table, std::string(key));
+  read(section);
+  section.finish();
+}
+
 bool TomlSection::table(std::string_view key, const Reader& read) {
   const toml::node* node = declare(key);
   if (node == nullptr) return false;
-  if (!node->is_table()) fail_at(key, "must be a section: [" + std::string(key) + "]");
-  TomlSection section(document_, *node->as_table(), std::string(key));
-  read(section);
-  section.finish();
+  if (!node->is_table()) fail_at(key, fmt::format("must be a section: [{}]", key));
+  read_table(*node->as_table(), key, read);
   return true;
 }
 
@@ -216,13 +195,9 @@ std::size_t TomlSection::tables(std::string_view key, const Reader& read) {
   if (node == nullptr) return 0;
   const toml::array* array = node->as_array();
   if (array == nullptr || !array->is_homogeneous(toml::node_type::table)) {
-    fail_at(key, "must be a list of sections: [[" + std::string(key) + "]]");
+    fail_at(key, fmt::format("must be a list of sections: [[{}]]", key));
   }
-  for (const toml::node& entry : *array) {
-    TomlSection section(document_, *entry.as_table(), std::string(key));
-    read(section);
-    section.finish();
-  }
+  for (const toml::node& entry : *array) read_table(*entry.as_table(), key, read);
   return array->size();
 }
 
@@ -247,26 +222,21 @@ void TomlSection::fail_missing() const {
         key.str() == wanted.name || 3 * edit_distance(key.str(), first) <= first.size();
     if (is_near && !is_declared(key.str())) fail_unknown(key);
   }
-  const std::string owner = name_.empty() ? "the file" : "[" + name_ + "]";
-  fail(owner + " needs " + joined(wanted.keys, " or "));
+  fail(fmt::format("{} needs {}", name_.empty() ? "the file" : "[" + name_ + "]",
+                   fmt::join(wanted.keys, " or ")));
 }
 
 void TomlSection::fail_unknown(const toml::key& key) const {
-  const std::string unknown = "unknown key " + in_quotes(key.str()) + ": ";
+  const std::string unknown = fmt::format("unknown key {}: ", in_quotes(key.str()));
+  std::vector<std::string_view> accepted;
   for (const Declared& declared : declared_) {
     if (declared.name == key.str()) {
-      document_.fail(key.source(), unknown + "it needs its unit: " + joined(declared.keys, ", "));
+      document_.fail(key.source(), fmt::format("{}it needs its unit: {}", unknown,
+                                               fmt::join(declared.keys, ", ")));
     }
+    accepted.insert(accepted.end(), declared.keys.begin(), declared.keys.end());
   }
-  document_.fail(key.source(), unknown + did_you_mean(key.str(), keys()));
-}
-
-std::vector<std::string_view> TomlSection::keys() const {
-  std::vector<std::string_view> all;
-  for (const Declared& declared : declared_) {
-    all.insert(all.end(), declared.keys.begin(), declared.keys.end());
-  }
-  return all;
+  document_.fail(key.source(), unknown + did_you_mean(key.str(), accepted));
 }
 
 void TomlSection::finish() const {
@@ -302,8 +272,7 @@ void TomlDocument::read(const TomlSection::Reader& read) const {
 }
 
 void TomlDocument::fail(const toml::source_region& where, const std::string& what) const {
-  throw Error(name_ + ":" + std::to_string(where.begin.line) + ":" +
-              std::to_string(where.begin.column) + ": " + what);
+  throw Error(fmt::format("{}:{}:{}: {}", name_, where.begin.line, where.begin.column, what));
 }
 
 }  // namespace leeway::sim

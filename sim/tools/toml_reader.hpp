@@ -12,19 +12,13 @@
 
 #include <toml++/toml.h>
 
-#include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "leeway/earth/fields.hpp"
-#include "leeway/earth/names.hpp"
 #include "leeway/earth/units.hpp"
 
 namespace leeway::sim {
@@ -51,8 +45,6 @@ class TomlValue {
 
   std::string_view key() const { return key_->str(); }
   std::string text() const;  ///< of a number that is one, as messages show it
-  const Quantity& quantity() const { return quantity_; }
-  const Unit* unit() const { return unit_; }  ///< null: a quantity without one
   bool is_array() const { return node_->is_array(); }
   std::size_t size() const;  ///< of an array, else 0
 
@@ -90,7 +82,6 @@ class TomlSection {
 
   std::optional<TomlValue> value(const Quantity& quantity);
   std::optional<double> number(const Quantity& quantity);  ///< in SI
-  std::optional<std::vector<double>> numbers(const Quantity& quantity, std::size_t count);
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high);
   std::optional<bool> boolean(std::string_view key);
   std::optional<std::string> text(std::string_view key);
@@ -133,10 +124,12 @@ class TomlSection {
   };
 
   const toml::node* declare(std::string_view key);
+  template <class T>
+  std::optional<T> of_type(std::string_view key, const std::string& otherwise);
+  void read_table(const toml::table& table, std::string_view key, const Reader& read);
   bool is_declared(std::string_view key) const;
   [[noreturn]] void fail_missing() const;
   [[noreturn]] void fail_unknown(const toml::key& key) const;
-  std::vector<std::string_view> keys() const;
 
   const TomlDocument& document_;
   const toml::table& table_;

@@ -1,18 +1,8 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <filesystem>
-#include <optional>
-#include <string>
 
-#include "leeway/earth/earth.hpp"
 #include "leeway/logs/csv_writer.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
 
@@ -62,29 +52,35 @@ void write_moment(CsvWriter& csv, const sim::CovariancePoint& point) {
   csv.write(time_from_seconds(point.t_s), row);
 }
 
-/// Sum over north and east.
-double horizontal_m2(const Eigen::Matrix3d& mean_sq_n_m2) {
-  return mean_sq_n_m2.topLeftCorner<2, 2>().trace();
+/// What a source adds to the mean square of the true error.
+struct Source {
+  std::string name{};
+  Eigen::Vector3d mean_sq_n_m2{Eigen::Vector3d::Zero()};
+
+  double horizontal_m2() const { return mean_sq_n_m2.x() + mean_sq_n_m2.y(); }
+  Eigen::Vector3d sigma_n_m() const { return mean_sq_n_m2.cwiseMax(0.0).cwiseSqrt(); }
+};
+
+/// Every source, and as the last the total.
+std::vector<Source> sources_of(const sim::ErrorBudget& error_budget) {
+  std::vector<Source> sources;
+  Source total{"total"};
+  for (const sim::ErrorBudgetLine& line : error_budget) {
+    sources.push_back({std::string(name(line.source)), line.mean_sq_n_m2.diagonal()});
+    total.mean_sq_n_m2 += sources.back().mean_sq_n_m2;
+  }
+  sources.push_back(total);
+  return sources;
 }
 
-/// Of all sources.
-Eigen::Matrix3d total(const sim::ErrorBudget& error_budget) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const sim::ErrorBudgetLine& line : error_budget) sum += line.mean_sq_n_m2;
-  return sum;
-}
-
-/// A row for each source and one for the total.
-std::string error_budget_csv(const sim::ErrorBudget& error_budget) {
-  const Eigen::Matrix3d sum = total(error_budget);
+std::string error_budget_csv(const std::vector<Source>& sources) {
   std::string csv = "source,north_m,east_m,down_m,horizontal_m2,horizontal_share\n";
-  const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
-    const Eigen::Vector3d sigma_m = P_n.diagonal().cwiseMax(0.0).cwiseSqrt();
-    csv += fmt::format("{},{},{},{},{},{}\n", source, sigma_m.x(), sigma_m.y(), sigma_m.z(),
-                       horizontal_m2(P_n), horizontal_m2(P_n) / horizontal_m2(sum));
-  };
-  for (const sim::ErrorBudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
-  add("total", sum);
+  for (const Source& source : sources) {
+    const Eigen::Vector3d sigma_m = source.sigma_n_m();
+    csv += fmt::format("{},{},{},{},{},{}\n", source.name, sigma_m.x(), sigma_m.y(), sigma_m.z(),
+                       source.horizontal_m2(),
+                       source.horizontal_m2() / sources.back().horizontal_m2());
+  }
   return csv;
 }
 
@@ -109,22 +105,17 @@ void print_sigmas(const sim::CovariancePoint& worst) {
   table.print();
 }
 
-void print_sources(sim::ErrorBudget error_budget) {
-  std::sort(error_budget.begin(), error_budget.end(), [](const auto& a, const auto& b) {
-    return horizontal_m2(a.mean_sq_n_m2) > horizontal_m2(b.mean_sq_n_m2);
-  });
-  const Eigen::Matrix3d sum = total(error_budget);
+/// The greatest first.
+void print_sources(std::vector<Source> sources) {
+  std::sort(sources.begin(), sources.end() - 1,
+            [](const Source& a, const Source& b) { return a.horizontal_m2() > b.horizontal_m2(); });
   Table table({"<source", "north, m", "east, m", "down, m", "horizontal, m", "share, %"});
-  const auto add = [&](std::string_view source, const Eigen::Matrix3d& P_n) {
-    const double m2 = horizontal_m2(P_n);
-    std::vector<std::string> cells{std::string(source)};
-    for (int i = 0; i < 3; ++i) cells.push_back(number(std::sqrt(std::max(P_n(i, i), 0.0)), 3));
-    cells.push_back(number(std::sqrt(m2), 3));
-    cells.push_back(number(100.0 * m2 / horizontal_m2(sum), 2));
-    table.add(std::move(cells));
-  };
-  for (const sim::ErrorBudgetLine& line : error_budget) add(name(line.source), line.mean_sq_n_m2);
-  add("total", sum);
+  for (const Source& source : sources) {
+    const Eigen::Vector3d sigma_m = source.sigma_n_m();
+    const double m2 = source.horizontal_m2();
+    table.add({source.name, number(sigma_m.x(), 3), number(sigma_m.y(), 3), number(sigma_m.z(), 3),
+               number(std::sqrt(m2), 3), number(100.0 * m2 / sources.back().horizontal_m2(), 2)});
+  }
   table.print();
 }
 
@@ -141,18 +132,20 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   }
   print_sigmas(r.worst);
   fmt::print("\nWhere the true error comes from\n");
-  print_sources(r.error_budget);
+  print_sources(sources_of(r.error_budget));
 }
 
 Json results_json(const sim::CovarianceAnalysis& r) {
+  std::vector<Source> sources = sources_of(r.error_budget);
+  const double total_m2 = sources.back().horizontal_m2();
+  sources.pop_back();
   Json error_budget = Json::array();
-  const double sum_m2 = horizontal_m2(total(r.error_budget));
-  for (const sim::ErrorBudgetLine& line : r.error_budget) {
-    error_budget.push_back({{"source", name(line.source)},
-                            {"north_m2", line.mean_sq_n_m2(0, 0)},
-                            {"east_m2", line.mean_sq_n_m2(1, 1)},
-                            {"down_m2", line.mean_sq_n_m2(2, 2)},
-                            {"horizontal_share", horizontal_m2(line.mean_sq_n_m2) / sum_m2}});
+  for (const Source& source : sources) {
+    error_budget.push_back({{"source", source.name},
+                            {"north_m2", source.mean_sq_n_m2.x()},
+                            {"east_m2", source.mean_sq_n_m2.y()},
+                            {"down_m2", source.mean_sq_n_m2.z()},
+                            {"horizontal_share", source.horizontal_m2() / total_m2}});
   }
   return {{"true_m", r.true_m},
           {"claimed_m", r.claimed_m},
@@ -195,7 +188,7 @@ int run(const AnalyzeChoice& options) {
   const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
   if (moments) writing([&] { moments->close(); });
   if (!options.error_budget.empty()) {
-    write_file(options.error_budget, error_budget_csv(result.error_budget));
+    write_file(options.error_budget, error_budget_csv(sources_of(result.error_budget)));
   }
   show(
       options.output, answer_json("analyze", scene_json(scene), results_json(result)),
@@ -208,11 +201,9 @@ int run(const AnalyzeChoice& options) {
 
 void add_options(CLI::App& app, AnalyzeChoice& options) {
   add_scene_options(app, options.scene);
-  app.add_option("--out", options.moments,
-                 "write claimed and true sigmas at every moment of the scene as CSV")
-      ->type_name("FILE");
-  app.add_option("--error-budget", options.error_budget, "write the error budget as CSV")
-      ->type_name("FILE");
+  add_file_option(app, "--out", options.moments,
+                  "write claimed and true sigmas at every moment of the scene as CSV");
+  add_file_option(app, "--error-budget", options.error_budget, "write the error budget as CSV");
   add_output_options(app, options.output);
 }
 

@@ -1,13 +1,5 @@
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "leeway/sim/atlas/atlas.hpp"
-#include "leeway/sim/atlas/atlas_expected.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/tables/atlas_tables.hpp"
 
 namespace leeway::cli {
@@ -53,10 +45,7 @@ int run(const AtlasChoice& options) {
   const Json answer =
       answer_json("atlas", {{"scenes", options.scenes}, {"short", options.atlas.brief}},
                   atlas_json(results, surprises));
-  show(options.output, answer, [&] {
-    print_atlas(results);
-    print_atlas_findings(results, surprises);
-  });
+  show(options.output, answer, [&] { print_atlas(results, surprises); });
   if (!options.csv.empty()) write_file(options.csv, sim::atlas_csv(results, options.atlas));
   if (!options.markdown.empty()) write_file(options.markdown, atlas_markdown(results));
   return surprises.empty() && !any_silent(results) ? kSuccess : kNoAnswer;
@@ -72,12 +61,11 @@ void add_options(CLI::App& app, AtlasChoice& options) {
       app.add_flag("--short", options.atlas.brief, "fewer trials and shorter drives, for tests");
   add_threads_option(app, options.threads);
   add_output_options(app, options.output);
-  app.add_option("--csv", options.csv, "write a row for each cell as CSV")->type_name("FILE");
-  app.add_option("--markdown", options.markdown, "write matrix and cells as docs/atlas.md has them")
-      ->type_name("FILE");
-  app.add_option("--write-expected", options.expected,
-                 "run both forms of all scenes and write what is found: sim/atlas/expected.csv")
-      ->type_name("FILE")
+  add_file_option(app, "--csv", options.csv, "write a row for each cell as CSV");
+  add_file_option(app, "--markdown", options.markdown,
+                  "write matrix and cells as docs/atlas.md has them");
+  add_file_option(app, "--write-expected", options.expected,
+                  "run both forms of all scenes and write what is found: sim/atlas/expected.csv")
       ->excludes(scene)
       ->excludes(brief);
 }

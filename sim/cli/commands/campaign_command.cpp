@@ -1,18 +1,12 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
-#include <chrono>
-#include <string>
 #include <thread>
 
 #include "leeway/sim/sensors/imu_simulator.hpp"
+#include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/trials/campaign.hpp"
 #include "leeway/sim/trials/trial_journal.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
-#include "sim/cli/pages/campaign_fan.hpp"
+#include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -114,19 +108,80 @@ int cores_of(const CampaignChoice& options, const sim::Ranks& ranks) {
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
+/// Of the scene's trials, the first 100 of them; one that is no longer finite ends early.
+std::vector<std::vector<sim::TrialEpoch>> epochs_of(const sim::Scene& scene, int threads) {
+  constexpr int kMostTrials = 100;
+  const sim::TrialPlan plan(scene, {}, threads);
+  std::vector<std::vector<sim::TrialEpoch>> epochs(
+      static_cast<std::size_t>(std::min(scene.trials, kMostTrials)));
+  Progress bar("fan");
+  sim::parallel_for(
+      epochs.size(),
+      [&](std::size_t k) {
+        sim::run_trial(plan, scene.first_seed + k,
+                       [&epochs, k](const sim::TrialEpoch& e) { epochs[k].push_back(e); });
+      },
+      [&](std::size_t done) {
+        bar.show(static_cast<double>(done) / static_cast<double>(epochs.size()));
+      },
+      threads);
+  return epochs;
+}
+
+/// Between the neighbours in order.
+double percentile_of(std::vector<double>& values, double fraction) {
+  std::sort(values.begin(), values.end());
+  const double at = fraction * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return std::lerp(values[below], values[above], at - static_cast<double>(below));
+}
+
+/// A table fan: percentiles of the horizontal error before each fix, and the median of what the
+/// trials claim.
+Json fan_json(const sim::Scene& scene, int threads) {
+  const std::vector<std::vector<sim::TrialEpoch>> trials = epochs_of(scene, threads);
+  SeriesTable fan(
+      {"t_s", "p2_5_m", "p25_m", "p50_m", "p75_m", "p95_m", "p97_5_m", "claimed_r95_m"});
+  for (std::size_t i = 0;; ++i) {
+    std::vector<double> row(1);
+    std::vector<double> errors_m;
+    std::vector<double> claims_m;
+    for (const auto& trial : trials) {
+      if (i >= trial.size()) continue;
+      row[0] = trial[i].t_s;
+      errors_m.push_back(trial[i].error_h_m);
+      claims_m.push_back(trial[i].claimed_r95_m);
+    }
+    if (errors_m.empty()) return {{"fan", fan.json()}};
+    for (const double fraction : {0.025, 0.25, 0.5, 0.75, 0.95, 0.975}) {
+      row.push_back(percentile_of(errors_m, fraction));
+    }
+    row.push_back(percentile_of(claims_m, 0.5));
+    fan.add(row);
+  }
+}
+
+/// The first rank shows the progress.
+sim::CampaignResult result_of(const sim::Scene& scene, sim::CampaignOptions options,
+                              const sim::Ranks& ranks) {
+  std::optional<Progress> bar;
+  if (ranks.is_first()) {
+    bar.emplace("campaign");
+    options.progress = [&bar](const auto& done) { bar->show(done.fraction, done.remaining_s); };
+  }
+  try {
+    return sim::campaign(scene, options, ranks);
+  } catch (const sim::JournalFailure& error) {
+    throw WriteFailure(error.what());
+  }
+}
+
 int run_on(const CampaignChoice& options, const sim::Ranks& ranks) {
   using Clock = std::chrono::steady_clock;
   const sim::Scene scene = scene_of(options.scene);
   const auto start = Clock::now();
-  const sim::CampaignResult result = [&] {
-    sim::CampaignOptions shown = options.campaign;
-    if (!ranks.is_first()) return sim::campaign(scene, shown, ranks);
-    Progress progress("campaign");
-    shown.progress = [&progress](const sim::CampaignProgress& p) {
-      progress.show(p.fraction, p.remaining_s);
-    };
-    return sim::campaign(scene, shown, ranks);
-  }();
+  const sim::CampaignResult result = result_of(scene, options.campaign, ranks);
   if (!ranks.is_first()) return kSuccess;
   Json input = scene_json(scene);
   if (options.campaign.score_last_s) input["score_last_s"] = *options.campaign.score_last_s;
@@ -136,38 +191,28 @@ int run_on(const CampaignChoice& options, const sim::Ranks& ranks) {
                 std::chrono::duration<double>(Clock::now() - start).count());
   };
   show(options.output, answer_json("campaign", std::move(input), results_json(result)), print,
-       [&] { return campaign_fan(scene, options.campaign.threads); });
+       [&] { return fan_json(scene, options.campaign.threads); });
   return result.epochs > 0 ? kSuccess : kNoAnswer;
 }
 
-/// Ends all ranks; the first is the one to say why.
-[[noreturn]] void stop(const sim::Ranks& ranks, const std::string& message, int exit_code) {
-  if (ranks.is_first()) {
-    std::fflush(stdout);
-    fmt::print(stderr, "leeway: {}\n", message);
-  }
-  ranks.stop(message, exit_code);
+int exit_code_of(const std::exception& error) {
+  if (const auto* other = dynamic_cast<const sim::RankFailure*>(&error)) return other->exit_code;
+  const bool is_unusable = dynamic_cast<const Error*>(&error) != nullptr;
+  return is_unusable && dynamic_cast<const WriteFailure*>(&error) == nullptr ? kUnusable : kFailure;
 }
 
+/// Where there are several ranks, all end with the first error, and the first rank says why.
 int run(const CampaignChoice& options) {
   const sim::Ranks ranks;
-  const auto give_up = [&ranks](const std::exception& error, int exit_code) {
-    if (ranks.count() > 1) stop(ranks, error.what(), exit_code);
-  };
   try {
     return run_on(options, ranks);
-  } catch (const sim::JournalFailure& error) {
-    give_up(error, kFailure);
-    throw WriteFailure(error.what());
-  } catch (const sim::RankFailure& error) {
-    give_up(error, error.exit_code);
-    throw;
-  } catch (const Error& error) {
-    give_up(error, kUnusable);
-    throw;
   } catch (const std::exception& error) {
-    give_up(error, kFailure);
-    throw;
+    if (ranks.count() == 1) throw;
+    if (ranks.is_first()) {
+      std::fflush(stdout);
+      fmt::print(stderr, "leeway: {}\n", error.what());
+    }
+    ranks.stop(error.what(), exit_code_of(error));
   }
 }
 
@@ -176,9 +221,8 @@ void add_options(CLI::App& app, CampaignChoice& options) {
   add_trial_options(app, options.scene, 10'000'000, "in place of the scene's");
   sim::CampaignOptions& c = options.campaign;
   add_threads_option(app, c.threads, "of this process, or of each rank under mpirun or srun; ");
-  app.add_option("--journal", c.journal,
-                 "keep finished trials here, and do not run again those that are")
-      ->type_name("FILE");
+  add_file_option(app, "--journal", c.journal,
+                  "keep finished trials here, and do not run again those that are");
   app.add_option("--score-last-s", c.score_last_s,
                  "score fixes this close to the scene's end, s (default: as the scene's limit)")
       ->check(positive());

@@ -1,17 +1,9 @@
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/fmt/ranges.h>
-
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "leeway/sim/compare/compare.hpp"
 #include "leeway/sim/compare/pareto.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -25,10 +17,6 @@ struct CompareChoice {
   sim::CompareOptions compare{};
   Output output{};
 };
-
-double nees_of(const sim::Accuracy& accuracy) {
-  return accuracy.has_claim ? accuracy.figures.mean_nees : std::numeric_limits<double>::quiet_NaN();
-}
 
 /// Rows are numbered from 1.
 std::string number_of(const std::optional<std::size_t>& index) {
@@ -56,17 +44,35 @@ Tone tone_of(const sim::Compared& c) {
   return c.on_front ? Tone::kGood : Tone::kPlain;
 }
 
+/// Of the variant numbered from 0.
+Row row_of(const sim::Comparison& comparison, std::size_t index) {
+  const sim::Compared& c = comparison.variants[index];
+  const sim::CampaignResult& r = c.accuracy.figures;
+  const std::optional<std::size_t>& by = c.dominated_by;
+  return {{"no.", "", number_of(index)},
+          {"<front", "", c.on_front ? "*" : ""},
+          {"<variant", "variant", c.name},
+          {"ns/s", "cost_ns_per_s", c.cost.median_ns_per_s},
+          {"least", "cost_least_ns_per_s", c.cost.least_ns_per_s},
+          {"most", "cost_most_ns_per_s", c.cost.most_ns_per_s},
+          {"RMS, m", "rms_horizontal_m", r.rms_horizontal_m, 4},
+          {"R95, m", "r95_m", c.accuracy.r95_m, 4},
+          {"NEES", "nees", c.accuracy.has_claim ? Json(r.mean_nees) : Json(), 2},
+          {"", "nees_band", Json{r.nees_low, r.nees_high}},
+          {"<consistency", "", outcome_of(c.accuracy)},
+          {"", "consistency", name(sim::consistency_of(c.accuracy))},
+          {"", "trials_diverged", r.diverged},
+          {"", "trials_not_finite", r.not_finite},
+          {"", "front", c.on_front},
+          {"<dominated by", "", number_of(by)},
+          {"", "dominated_by", by ? Json(comparison.variants[*by].name) : Json()}};
+}
+
 void print_rows(const sim::Comparison& comparison, bool only_front) {
-  Table table({"no.", "<front", "<variant", "ns/s", "least", "most", "RMS, m", "R95, m", "NEES",
-               "<consistency", "<dominated by"});
+  Table table = table_of(row_of(comparison, 0));
   for (std::size_t i = 0; i < comparison.variants.size(); ++i) {
     const sim::Compared& c = comparison.variants[i];
-    if (only_front && !c.on_front) continue;
-    table.add({number_of(i), c.on_front ? "*" : "", c.name, number(c.cost.median_ns_per_s, 0),
-               number(c.cost.least_ns_per_s, 0), number(c.cost.most_ns_per_s, 0),
-               number(c.accuracy.figures.rms_horizontal_m, 4), number(c.accuracy.r95_m, 4),
-               number(nees_of(c.accuracy), 2), outcome_of(c.accuracy), number_of(c.dominated_by)},
-              tone_of(c));
+    if (c.on_front || !only_front) add_row(table, row_of(comparison, i), tone_of(c));
   }
   table.print();
 }
@@ -106,22 +112,8 @@ void print_comparison(const sim::Comparison& comparison, int repeat) {
 
 Json comparison_json(const sim::Comparison& comparison) {
   Json rows = Json::array();
-  for (const sim::Compared& c : comparison.variants) {
-    const sim::CampaignResult& r = c.accuracy.figures;
-    const std::optional<std::size_t>& by = c.dominated_by;
-    rows.push_back({{"variant", c.name},
-                    {"cost_ns_per_s", c.cost.median_ns_per_s},
-                    {"cost_least_ns_per_s", c.cost.least_ns_per_s},
-                    {"cost_most_ns_per_s", c.cost.most_ns_per_s},
-                    {"rms_horizontal_m", r.rms_horizontal_m},
-                    {"r95_m", c.accuracy.r95_m},
-                    {"nees", nees_of(c.accuracy)},
-                    {"nees_band", {r.nees_low, r.nees_high}},
-                    {"consistency", name(sim::consistency_of(c.accuracy))},
-                    {"trials_diverged", r.diverged},
-                    {"trials_not_finite", r.not_finite},
-                    {"front", c.on_front},
-                    {"dominated_by", by ? Json(comparison.variants[*by].name) : Json()}});
+  for (std::size_t i = 0; i < comparison.variants.size(); ++i) {
+    rows.push_back(row_json(row_of(comparison, i)));
   }
   return rows;
 }
@@ -146,13 +138,11 @@ sim::Comparison compared(const CompareChoice& options) {
 int run(const CompareChoice& options) {
   const sim::Comparison comparison = compared(options);
   const int repeat = options.compare.repeat;
-  Json input = timed_input_json(comparison.scene, repeat);
-  input.erase("gate_probability");  // there is no gate
-  show(options.output, answer_json("compare", std::move(input), comparison_json(comparison)),
+  show(options.output,
+       answer_json("compare", timed_input_json(comparison.scene, repeat),
+                   comparison_json(comparison)),
        [&] { print_comparison(comparison, repeat); });
-  const bool any = std::any_of(comparison.variants.begin(), comparison.variants.end(),
-                               [](const sim::Compared& c) { return c.on_front; });
-  return any ? kSuccess : kNoAnswer;
+  return std::ranges::any_of(comparison.variants, &sim::Compared::on_front) ? kSuccess : kNoAnswer;
 }
 
 void add_options(CLI::App& app, CompareChoice& options) {

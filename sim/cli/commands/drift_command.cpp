@@ -1,15 +1,7 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <limits>
-#include <string>
 
 #include "leeway/sim/trials/drift.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
@@ -139,35 +131,33 @@ Json curves_json(const sim::DriftStudy& study) {
   return curves;
 }
 
+sim::DriftStudy study_of(const sim::DriftConfig& config) {
+  Progress progress("drift");
+  return sim::drift_study(config, std::ref(progress));
+}
+
 int run(const DriftChoice& options) {
-  const sim::DriftStudy study = [&options] {
-    Progress progress("drift");
-    return sim::drift_study(options.config, std::ref(progress));
-  }();
-  if (!options.curves.empty()) write_file(options.curves, curves_csv(study));
   const sim::DriftConfig& c = options.config;
-  const Json answer = answer_json("drift",
-                                  {{"trials", c.trials},
-                                   {"seed", c.seed},
-                                   {"latitude_deg", c.latitude_deg},
-                                   {"imu_rate_hz", c.imu_rate_hz}},
-                                  results_json(study));
+  const sim::DriftStudy study = study_of(c);
+  if (!options.curves.empty()) write_file(options.curves, curves_csv(study));
+  Json input{{"trials", c.trials},
+             {"seed", c.seed},
+             {"latitude_deg", c.latitude_deg},
+             {"imu_rate_hz", c.imu_rate_hz}};
   show(
-      options.output, answer, [&] { print_tables(options, study); },
-      [&] { return curves_json(study); });
+      options.output, answer_json("drift", std::move(input), results_json(study)),
+      [&] { print_tables(options, study); }, [&] { return curves_json(study); });
   return kSuccess;
 }
 
 void add_options(CLI::App& app, DriftChoice& options) {
   sim::DriftConfig& c = options.config;
-  app.add_option("--trials", c.trials, "Monte Carlo trials of a cell")->capture_default_str();
-  app.add_option("--seed", c.seed, "of the random numbers")->capture_default_str();
-  app.add_option("--latitude", c.latitude_deg, "deg")->type_name("DEG")->capture_default_str();
-  app.add_option("--imu-rate-hz", c.imu_rate_hz, "IMU rate, Hz")
-      ->type_name("HZ")
-      ->capture_default_str();
-  app.add_option("--curves", options.curves, "write error against time as CSV (m, s)")
-      ->type_name("FILE.csv");
+  add_default_option(app, "--trials", c.trials, "Monte Carlo trials of a cell");
+  add_default_option(app, "--seed", c.seed, "of the random numbers");
+  add_default_option(app, "--latitude", c.latitude_deg, "deg")->type_name("DEG");
+  add_default_option(app, "--imu-rate-hz", c.imu_rate_hz, "IMU rate, Hz")->type_name("HZ");
+  add_file_option(app, "--curves", options.curves, "write error against time as CSV (m, s)",
+                  "FILE.csv");
   add_output_options(app, options.output);
 }
 

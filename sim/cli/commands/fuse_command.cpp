@@ -1,44 +1,22 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
-#include <string>
-
-#include "leeway/ekf/ekf_config.hpp"
 #include "leeway/logs/csv_writer.hpp"
-#include "leeway/logs/gnss_log.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/commands/fuse_jobs.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/pages/fuse_series.hpp"
 #include "sim/cli/tables/fuse_tables.hpp"
 
 namespace leeway::cli {
 namespace {
 
-/// How far a replay has come, told by the span of its fixes.
-class ReplayProgress {
- public:
-  explicit ReplayProgress(const sim::ReplayInput& input)
-      : bar_(input.imu.parent_path().filename().string()) {
-    if (!bar_.visible() || !std::filesystem::is_regular_file(input.gnss)) return;
-    GnssLogReader gnss(input.gnss);
-    while (const auto fix = gnss.next()) {
-      if (!first_) first_ = fix->time;
-      last_ = fix->time;
-    }
+/// The times of the first fix and the last one, which tell how far a replay has come.
+std::pair<Time, Time> span_of(const std::filesystem::path& log) {
+  std::optional<Time> first;
+  Time last{};
+  GnssLogReader gnss(log);
+  while (const auto fix = gnss.next()) {
+    first = first.value_or(fix->time);
+    last = fix->time;
   }
-
-  void operator()(Time t) {
-    if (!first_ || last_ <= *first_) return;
-    bar_.show(to_seconds(t - *first_) / to_seconds(last_ - *first_));
-  }
-
- private:
-  Progress bar_;
-  std::optional<Time> first_{};
-  Time last_{};
-};
+  return {first.value_or(last), last};
+}
 
 /// Whether all that was asked for has an answer.
 bool is_answered(const FuseJob& job) {
@@ -57,9 +35,14 @@ void replay(FuseJob& job, NavigatorConfig config, FuseSeries* series) {
   writing([&] {
     // Unclosed, it leaves nothing: this only tells early whether the file can be created.
     if (!job.input.solution.empty()) CsvWriter(job.input.solution, {"t_s"});
-    ReplayProgress progress(job.input);
+    Progress bar(job.input.imu.parent_path().filename().string());
     sim::ReplayObserver observer = series ? series->observer() : sim::ReplayObserver{};
-    observer.progress = [&progress](Time t) { progress(t); };
+    if (bar.visible() && std::filesystem::is_regular_file(job.input.gnss)) {
+      observer.progress = [&bar, span = span_of(job.input.gnss)](Time t) {
+        const auto [first, last] = span;
+        if (first < last) bar.show(to_seconds(t - first) / to_seconds(last - first));
+      };
+    }
     job.result = sim::replay(job.input, config, observer);
   });
 }
@@ -68,7 +51,7 @@ int run(const FuseOptions& options) {
   const NamedImu imu = imu_of(options.imu);
   const NavigatorConfig config = navigator_config(options, imu.model);
   std::vector<FuseJob> jobs = fuse_jobs(options);
-  const bool reported = !options.output.show.report.empty();
+  const bool reported = !options.output.report.empty();
   Json all_series = Json::object();
   for (FuseJob& job : jobs) {
     FuseSeries series;
@@ -77,7 +60,7 @@ int run(const FuseOptions& options) {
     warn(job);
   }
   show(
-      options.output.show, fuse_json(options, imu.name, jobs),
+      options.output, fuse_json(options, imu.name, jobs),
       [&] { print_tables(options, imu.name, jobs); }, [&] { return all_series; });
   return std::all_of(jobs.begin(), jobs.end(), is_answered) ? kSuccess : kNoAnswer;
 }
@@ -90,16 +73,16 @@ void add_log_options(CLI::App& app, FuseLogs& logs) {
           ->type_name("DIR");
   const auto file = [&app, drive](const std::string& name, std::filesystem::path& path,
                                   const std::string& description) {
-    app.add_option("--" + name, path, description)->type_name("FILE")->excludes(drive);
+    add_file_option(app, "--" + name, path, description)->excludes(drive);
   };
-  file("imu", logs.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip");
-  file("gnss", logs.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip");
+  file("imu", logs.files.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip");
+  file("gnss", logs.files.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip");
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
-    file(kAidings[a].name, logs.aidings[a],
+    file(kAidings[a].name, logs.files.aidings[a],
          fmt::format("{}, CSV: t_s, {} and maybe {}", kAidings[a].log, kAidings[a].value_column,
                      kAidings[a].sigma_column));
   }
-  file("truth", logs.truth,
+  file("truth", logs.files.truth,
        "truth or reference log to measure errors against; without it the errors of outages are "
        "measured against the withheld fixes");
   file("outages", logs.outages,
@@ -111,15 +94,14 @@ void add_log_options(CLI::App& app, FuseLogs& logs) {
                  "sensor axes to vehicle axes Rz(Y) Ry(P) Rx(R), deg; without it the sensor axes "
                  "are forward, right, down")
       ->excludes(drive);
-  app.add_option("--mount-axes", logs.mount_axes,
-                 "the vehicle axes of --mount: forward-left-up or forward-right-down")
-      ->check(CLI::IsMember({"flu", "frd"}))
-      ->capture_default_str();
-  app.add_option("--rate-meaning", logs.rate_meaning,
+  add_default_option(app, "--mount-axes", logs.mount_axes,
+                     "the vehicle axes of --mount: forward-left-up or forward-right-down")
+      ->check(CLI::IsMember({"flu", "frd"}));
+  app.add_option("--rate-meaning", logs.files.imu_options.meaning,
                  "what a rate in the IMU log is: the value at its time, the mean since the one "
                  "before, or a value held until the next")
       ->transform(named<RateMeaning>())
-      ->default_str(std::string(name(logs.rate_meaning)));
+      ->default_str(std::string(name(logs.files.imu_options.meaning)));
   add_numbers<2>(app, "--gnss-sigma-scale", "POS,VEL", logs.gnss_sigma_scale,
                  "multiply the standard deviations of the GNSS log (default: 1,1)");
 }
@@ -129,30 +111,25 @@ void add_filter_options(CLI::App& app, FuseOptions& options) {
   add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
                  "IMU to antenna, forward, right, down, m (default: 0,0,0)");
   EkfConfig& filter = options.filter;
-  app.add_option("--gnss-correlation-s", filter.gnss_correlation_s,
-                 "correlation time of the GNSS position error, s; 0: white")
-      ->capture_default_str();
-  app.add_option("--gate", filter.gate_probability,
-                 "refuse a fix that is this improbable; probability")
-      ->capture_default_str();
-  app.add_option("--covariance-interval-s", filter.covariance_interval_s,
-                 "time between covariance propagations, s; 0: at every IMU sample")
-      ->capture_default_str();
-  app.add_option(
-         "--align-speed-mps", options.alignment.min_speed_mps,
-         "the GNSS course is taken as the heading from this speed on, m/s; 1 suits a walker")
-      ->capture_default_str();
+  add_default_option(app, "--gnss-correlation-s", filter.gnss_correlation_s,
+                     "correlation time of the GNSS position error, s; 0: white");
+  add_default_option(app, "--gate", filter.gate_probability,
+                     "refuse a fix that is this improbable; probability");
+  add_default_option(app, "--covariance-interval-s", filter.covariance_interval_s,
+                     "time between covariance propagations, s; 0: at every IMU sample");
+  add_default_option(
+      app, "--align-speed-mps", options.alignment.min_speed_mps,
+      "the GNSS course is taken as the heading from this speed on, m/s; 1 suits a walker");
   app.add_option("--scheme", filter.strapdown.scheme, "integration scheme of the strapdown")
       ->transform(named<Scheme>())
       ->default_str(std::string(name(filter.strapdown.scheme)));
 }
 
 void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
-  app.add_option("--vehicle", vehicle.name,
-                 "car: use that it stands still at times and never slides sideways; without "
-                 "--mount the mount is estimated")
-      ->check(CLI::IsMember({"none", "car"}))
-      ->capture_default_str();
+  add_default_option(app, "--vehicle", vehicle.name,
+                     "car: use that it stands still at times and never slides sideways; without "
+                     "--mount the mount is estimated")
+      ->check(CLI::IsMember({"none", "car"}));
   std::vector<std::string> part_names;
   for (const VehiclePart& part : kVehicleParts) part_names.emplace_back(part.name);
   app.add_option("--without", vehicle.without, "switch a part of --vehicle off; may be repeated")
@@ -163,24 +140,22 @@ void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
 }
 
 void add_timing_options(CLI::App& app, TimingConfig& timing) {
-  app.add_option("--position-lag-s", timing.position_lag_s,
-                 "GNSS positions are those of this long before their time, s")
-      ->capture_default_str();
-  app.add_option("--velocity-lag-s", timing.velocity_lag_s,
-                 "the same for velocities: half an epoch where they are means over one, s")
-      ->capture_default_str();
+  add_default_option(app, "--position-lag-s", timing.position_lag_s,
+                     "GNSS positions are those of this long before their time, s");
+  add_default_option(app, "--velocity-lag-s", timing.velocity_lag_s,
+                     "the same for velocities: half an epoch where they are means over one, s");
 }
 
-void add_solution_options(CLI::App& app, FuseOutput& output) {
-  app.add_option("--out", output.solution, "write the solution as CSV; gzip when it ends in .gz")
-      ->type_name("FILE")
+void add_solution_options(CLI::App& app, FuseOptions& options) {
+  sim::ReplayInput& files = options.logs.files;
+  add_file_option(app, "--out", files.solution,
+                  "write the solution as CSV; gzip when it ends in .gz")
       ->excludes(app.get_option("--drive"));
-  app.add_option("--out-rate-hz", output.rate_hz,
-                 "solution epochs per second, in the file and in the RMS errors")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->capture_default_str();
-  app.add_flag("--verbose", output.verbose, "list every outage, also when they are more than 20");
-  add_output_options(app, output.show);
+  add_default_option(app, "--out-rate-hz", files.solution_rate_hz,
+                     "solution epochs per second, in the file and in the RMS errors")
+      ->check(CLI::Range(1e-3, 1e4));
+  app.add_flag("--verbose", options.verbose, "list every outage, also when they are more than 20");
+  add_output_options(app, options.output);
 }
 
 void add_options(CLI::App& app, FuseOptions& options) {
@@ -188,7 +163,7 @@ void add_options(CLI::App& app, FuseOptions& options) {
   add_filter_options(app, options);
   add_vehicle_options(app, options.vehicle);
   add_timing_options(app, options.timing);
-  add_solution_options(app, options.output);
+  add_solution_options(app, options);
 }
 
 const Command<FuseOptions> kFuse{

@@ -1,12 +1,8 @@
 #include "sim/cli/commands/fuse_jobs.hpp"
 
-#include <algorithm>
-#include <array>
 #include <fstream>
 
-#include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "lib/earth/field_walk.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -44,61 +40,50 @@ void inspect(FuseJob& job) {
   if (!in.truth.empty() && can_be_read_twice(in.truth)) TruthLogReader{in.truth};
 }
 
-FuseJob job_with_options(const FuseOptions& options) {
-  const FuseLogs& logs = options.logs;
+FuseJob job_with_options(const FuseLogs& logs) {
   FuseJob job;
-  job.input.imu_options.meaning = logs.rate_meaning;
+  job.input = logs.files;
   if (logs.gnss_sigma_scale) {
     job.input.gnss_options.position_sigma_scale = logs.gnss_sigma_scale->x();
     job.input.gnss_options.velocity_sigma_scale = logs.gnss_sigma_scale->y();
   }
-  job.input.solution_rate_hz = options.output.rate_hz;
   return job;
 }
 
-void set_truth(sim::ReplayInput& input, const std::filesystem::path& truth,
-               const std::optional<Eigen::Vector2d>& window_s) {
-  input.truth = truth;
-  if (!window_s) return;
-  if (!(window_s->x() < window_s->y())) {
-    throw Error("the truth window is from " + std::to_string(window_s->x()) + " to " +
-                std::to_string(window_s->y()) + " s: its end must be later than its begin");
+void set_truth_window(sim::ReplayInput& input, const Eigen::Vector2d& window_s) {
+  if (!(window_s.x() < window_s.y())) {
+    throw Error(
+        fmt::format("the truth window is from {:f} to {:f} s: its end must be later than its begin",
+                    window_s.x(), window_s.y()));
   }
-  input.truth_from_s = window_s->x();
-  input.truth_to_s = window_s->y();
+  input.truth_from_s = window_s.x();
+  input.truth_to_s = window_s.y();
 }
 
-FuseJob job_of_logs(const FuseOptions& options) {
-  const FuseLogs& logs = options.logs;
-  FuseJob job = job_with_options(options);
+FuseJob job_of_logs(const FuseLogs& logs) {
+  FuseJob job = job_with_options(logs);
   job.mount_rpy_deg = logs.mount_rpy_deg;
-  job.input.imu = logs.imu;
-  job.input.gnss = logs.gnss;
-  job.input.aidings = logs.aidings;
-  job.input.solution = options.output.solution;
-  set_truth(job.input, logs.truth, logs.truth_window_s);
+  if (logs.truth_window_s) set_truth_window(job.input, *logs.truth_window_s);
   if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);
   return job;
 }
 
 /// meta.json: {"mount_rpy_deg": [r, p, y], "reference_window_s": [from, to] or null}.
-FuseJob job_of_drive(const FuseOptions& options, const std::filesystem::path& folder) {
+FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) {
   const std::filesystem::path meta_path = folder / "meta.json";
   std::ifstream file(meta_path);
   if (!file) throw Error(meta_path.string() + ": cannot be opened; a drive is a folder with one");
-  FuseJob job = job_with_options(options);
+  FuseJob job = job_with_options(logs);
   job.drive = (folder / "").parent_path().filename().string();
   job.input.imu = folder / "imu.csv.gz";
   job.input.gnss = folder / "gnss.csv.gz";
   try {
     const Json meta = Json::parse(file);
-    const auto mount = meta.at("mount_rpy_deg").get<std::array<double, 3>>();
-    job.mount_rpy_deg = Eigen::Vector3d(mount[0], mount[1], mount[2]);
+    job.mount_rpy_deg.emplace(meta.at("mount_rpy_deg").get<std::array<double, 3>>().data());
     const Json& window = meta.at("reference_window_s");
     if (!window.is_null()) {
-      const auto from_to = window.get<std::array<double, 2>>();
-      set_truth(job.input, folder / "reference_position.csv.gz",
-                Eigen::Vector2d(from_to[0], from_to[1]));
+      job.input.truth = folder / "reference_position.csv.gz";
+      set_truth_window(job.input, Eigen::Vector2d(window.get<std::array<double, 2>>().data()));
     }
   } catch (const Json::exception& error) {
     throw Error(meta_path.string() + ": " + error.what());
@@ -135,7 +120,7 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
 std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
   const bool asks_for_a_vehicle =
-      !options.vehicle.without.empty() || logs.aidings != sim::AidingLogs{};
+      !options.vehicle.without.empty() || logs.files.aidings != sim::AidingLogs{};
   if (options.vehicle.name == "none" && asks_for_a_vehicle) {
     std::string names = "--without";
     for (const Aiding& a : kAidings) {
@@ -143,12 +128,12 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
     }
     throw Error(names + " are used with --vehicle car");
   }
-  if (logs.drives.empty() && (logs.imu.empty() || logs.gnss.empty())) {
+  if (logs.drives.empty() && (logs.files.imu.empty() || logs.files.gnss.empty())) {
     throw Error("fuse needs --imu and --gnss, or --drive");
   }
   std::vector<FuseJob> jobs;
-  if (logs.drives.empty()) jobs.push_back(job_of_logs(options));
-  for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(options, folder));
+  if (logs.drives.empty()) jobs.push_back(job_of_logs(logs));
+  for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(logs, folder));
   for (FuseJob& job : jobs) {
     const FuseVehicle& vehicle = options.vehicle;
     job.estimates_mount = vehicle.estimate_mount || (vehicle.name != "none" && !job.mount_rpy_deg);

@@ -2,15 +2,7 @@
 /// What `leeway fuse` was asked for, and the runs it comes to.
 #pragma once
 
-#include <Eigen/Core>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "leeway/navigator/navigator.hpp"
 #include "leeway/sim/replay/replay.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/options.hpp"
 
 namespace leeway::cli {
@@ -18,23 +10,12 @@ namespace leeway::cli {
 /// The logs of one run, or folders that each hold a run.
 struct FuseLogs {
   std::vector<std::filesystem::path> drives{};
-  std::filesystem::path imu{};
-  std::filesystem::path gnss{};
-  sim::AidingLogs aidings{};
-  std::filesystem::path truth{};
+  sim::ReplayInput files{};  ///< but for what is in a folder, and for the outages
   std::filesystem::path outages{};
   std::optional<Eigen::Vector2d> truth_window_s{};
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
   std::string mount_axes{"flu"};
-  RateMeaning rate_meaning{RateMeaning::kPoint};
   std::optional<Eigen::Vector2d> gnss_sigma_scale{};  ///< of position, of velocity
-};
-
-struct FuseOutput {
-  std::filesystem::path solution{};
-  double rate_hz{10.0};
-  bool verbose{false};
-  Output show{};
 };
 
 /// Aiding by what is known of the vehicle.
@@ -47,7 +28,8 @@ struct FuseVehicle {
 struct FuseOptions {
   FuseLogs logs{};
   FuseVehicle vehicle{};
-  FuseOutput output{};
+  bool verbose{false};
+  Output output{};
   ImuChoice imu{};
   EkfConfig filter{};  ///< all but the IMU model and the lever arm
   AlignmentConfig alignment{};

@@ -1,17 +1,8 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <string>
-#include <vector>
 
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -34,27 +25,15 @@ struct Shown {
   std::vector<DatasheetValue> values{};
 };
 
-bool is_file(const std::string& name) {
-  return name.ends_with(".toml") || std::filesystem::exists(name);
-}
-
 Shown shown(const ShownChoice& options) {
-  ImuChoice choice;
-  choice.range = options.range;
-  if (is_imu_class(options.name)) {
-    choice.name = options.name;
-  } else if (is_file(options.name)) {
-    choice.model_file = options.name;
-  } else {
-    choice.part = options.name;
-  }
-  Shown s{imu_of(choice)};
-  if (choice.part.empty()) {
-    s.values = sim::datasheet_values(s.imu.model);
-  } else {
-    s.part = &sim::imu_part(choice.part);
-    s.values.assign(s.part->values.begin(), s.part->values.end());
-  }
+  const std::string& name = options.name;
+  const bool is_class = is_imu_class(name);
+  const bool is_file = name.ends_with(".toml") || std::filesystem::exists(name);
+  const bool is_part = !is_class && !is_file;
+  Shown s{is_class || is_part ? imu_named(name, options.range) : imu_of({.model_file = name})};
+  if (is_part) s.part = &sim::imu_part(name);
+  s.values = is_part ? std::vector(s.part->values.begin(), s.part->values.end())
+                     : sim::datasheet_values(s.imu.model);
   return s;
 }
 
@@ -161,13 +140,12 @@ void print_list() {
 }
 
 Json triad_json(const TriadErrorModel& triad, const std::string& unit) {
-  Json json{{"bias_sigma_" + unit, triad.bias_sigma},
-            {"in_run_sigma_" + unit, triad.in_run.sigma},
-            {"in_run_tau_s", triad.in_run.tau_s},
-            {"noise_" + unit + "_per_sqrt_hz", triad.noise_density},
-            {"scale_sigma", triad.scale_sigma},
-            {"misalignment_sigma_rad", triad.misalignment_sigma_rad}};
-  return json;
+  return {{"bias_sigma_" + unit, triad.bias_sigma},
+          {"in_run_sigma_" + unit, triad.in_run.sigma},
+          {"in_run_tau_s", triad.in_run.tau_s},
+          {"noise_" + unit + "_per_sqrt_hz", triad.noise_density},
+          {"scale_sigma", triad.scale_sigma},
+          {"misalignment_sigma_rad", triad.misalignment_sigma_rad}};
 }
 
 Json class_json(const ImuErrorModel& model) {

@@ -1,17 +1,9 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <limits>
-#include <string>
 
 #include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -23,10 +15,6 @@ struct ReduceChoice {
   std::filesystem::path write{};
   Output output{};
 };
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double cost_of(const sim::TermWorth& term) { return term.cost ? term.cost->median_ns_per_s : kNan; }
 
 std::string remark(const sim::TermWorth& term, double limit_m) {
   if (!std::isfinite(term.predicted_m)) return "P not positive";
@@ -45,41 +33,67 @@ void print_conditions(const sim::ModelReduction& reduction, int repeat) {
       scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1, repeat);
 }
 
+Row row_of(const sim::TermWorth& term, double limit_m) {
+  return {{"<term", "term", name(term.term)},
+          {"<substitute", "substitute", sim::substitute(term.term)},
+          {"predicted, m", "predicted_m", term.predicted_m, 5},
+          {"measured, m", "measured_m", term.measured_m, 5},
+          {"ratio", "", term.predicted_m / term.measured_m, 2},
+          {"<remark", "", remark(term, limit_m)},
+          {"", "agrees", sim::agrees(term, limit_m)},
+          {"diverged", "trials_diverged", term.diverged},
+          {"cost, ns/s", "cost_ns_per_s", term.cost ? Json(term.cost->median_ns_per_s) : Json()},
+          {"<in the reduced model", "",
+           !term.cost     ? "unmodelled"
+           : term.is_kept ? "kept"
+                          : "dropped"},
+          {"", "kept", term.cost.has_value() && term.is_kept}};
+}
+
 void print_terms(const sim::ModelReduction& reduction) {
   fmt::print(
       "\nWhat each term of the full model is worth: RMS of the difference that its substitute "
       "makes, horizontally\n");
-  Table table({"<term", "<substitute", "predicted, m", "measured, m", "ratio", "<remark",
-               "diverged", "cost, ns/s", "<in the reduced model"});
-  for (const sim::TermWorth& term : reduction.terms) {
-    table.add({std::string(name(term.term)), std::string(sim::substitute(term.term)),
-               number(term.predicted_m, 5), number(term.measured_m, 5),
-               number(term.predicted_m / term.measured_m, 2),
-               remark(term, reduction.scene.limit.limit_m), fmt::format("{}", term.diverged),
-               number(cost_of(term), 0),
-               !term.cost     ? "unmodelled"
-               : term.is_kept ? "kept"
-                              : "dropped"});
-  }
+  const double limit_m = reduction.scene.limit.limit_m;
+  Table table = table_of(row_of(reduction.terms.front(), limit_m));
+  for (const sim::TermWorth& term : reduction.terms) add_row(table, row_of(term, limit_m));
   table.print();
+}
+
+Row row_of(const sim::ModelReduction& reduction, const sim::ModelWorth& model, const char* title) {
+  const sim::CampaignResult& r = model.measured.figures;
+  const double cost = model.cost.median_ns_per_s;
+  return {{"<model", "", title},
+          {"ns/s", "cost_ns_per_s", cost},
+          {"", "cost_least_ns_per_s", model.cost.least_ns_per_s},
+          {"", "cost_most_ns_per_s", model.cost.most_ns_per_s},
+          {"faster", "", reduction.full.cost.median_ns_per_s / cost, 2},
+          {"predicted, m", "predicted_m", model.predicted.error_m, 3},
+          {"measured, m", "measured_m", model.measured.error_m, 3},
+          {"limit, m", "", reduction.scene.limit.limit_m, 3},
+          {"RMS, m", "rms_horizontal_m", r.rms_horizontal_m, 3},
+          {"", "predicted_rms_horizontal_m", model.predicted.rms_m},
+          {"RMS/sigma", "rms_over_sigma", r.rms_over_sigma, 3},
+          {"NEES", "nees", r.mean_nees, 2},
+          {"", "nees_band", Json{r.nees_low, r.nees_high}},
+          {"predicted NEES", "predicted_nees", model.predicted.nees, 2},
+          {"", "difference_m", model.measured.difference_m},
+          {"diverged", "trials_diverged", r.diverged},
+          {"", "trials_not_finite", r.not_finite}};
+}
+
+/// The models compared: keys and rows.
+std::vector<std::pair<const char*, Row>> models_of(const sim::ModelReduction& r) {
+  return {{"full", row_of(r, r.full, "full")},
+          {"full_covariance_0_1_s", row_of(r, r.standard, "full, P every 0.1 s")},
+          {"reduced_full_rate", row_of(r, r.at_full_rate, "reduced, full IMU rate")},
+          {"reduced", row_of(r, r.reduced, "reduced")}};
 }
 
 void print_models(const sim::ModelReduction& reduction) {
   fmt::print("\nThe full model, and the cheapest found that keeps the limit\n");
-  Table table({"<model", "ns/s", "faster", "predicted, m", "measured, m", "limit, m", "RMS, m",
-               "RMS/sigma", "NEES", "predicted NEES", "diverged"});
-  for (const auto& [model, title] :
-       {std::pair{&reduction.full, "full"}, std::pair{&reduction.standard, "full, P every 0.1 s"},
-        std::pair{&reduction.at_full_rate, "reduced, full IMU rate"},
-        std::pair{&reduction.reduced, "reduced"}}) {
-    const sim::CampaignResult& r = model->measured.figures;
-    table.add({title, number(model->cost.median_ns_per_s, 0),
-               number(reduction.full.cost.median_ns_per_s / model->cost.median_ns_per_s, 2),
-               number(model->predicted.error_m, 3), number(model->measured.error_m, 3),
-               number(reduction.scene.limit.limit_m, 3), number(r.rms_horizontal_m, 3),
-               number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
-               number(model->predicted.nees, 2), fmt::format("{}", r.diverged)});
-  }
+  Table table = table_of(row_of(reduction, reduction.full, ""));
+  for (const auto& [key, row] : models_of(reduction)) add_row(table, row);
   table.print();
 }
 
@@ -92,54 +106,17 @@ void print_verdict(const sim::ModelReduction& reduction) {
       r.nees_high);
 }
 
-Json model_json(const sim::ModelWorth& model) {
-  const sim::CampaignResult& r = model.measured.figures;
-  return {{"cost_ns_per_s", model.cost.median_ns_per_s},
-          {"cost_least_ns_per_s", model.cost.least_ns_per_s},
-          {"cost_most_ns_per_s", model.cost.most_ns_per_s},
-          {"predicted_m", model.predicted.error_m},
-          {"measured_m", model.measured.error_m},
-          {"rms_horizontal_m", r.rms_horizontal_m},
-          {"predicted_rms_horizontal_m", model.predicted.rms_m},
-          {"rms_over_sigma", r.rms_over_sigma},
-          {"nees", r.mean_nees},
-          {"nees_band", {r.nees_low, r.nees_high}},
-          {"predicted_nees", model.predicted.nees},
-          {"difference_m", model.measured.difference_m},
-          {"trials_diverged", r.diverged},
-          {"trials_not_finite", r.not_finite}};
-}
-
-void print_reduction(const sim::ModelReduction& reduction, int repeat) {
-  print_conditions(reduction, repeat);
-  print_terms(reduction);
-  print_models(reduction);
-  print_verdict(reduction);
-}
-
 Json reduction_json(const sim::ModelReduction& reduction) {
   const double limit_m = reduction.scene.limit.limit_m;
-  Json terms = Json::array();
+  Json results{{"limit_m", limit_m}, {"terms", Json::array()}};
   for (const sim::TermWorth& term : reduction.terms) {
-    terms.push_back({{"term", name(term.term)},
-                     {"substitute", sim::substitute(term.term)},
-                     {"predicted_m", term.predicted_m},
-                     {"measured_m", term.measured_m},
-                     {"agrees", sim::agrees(term, limit_m)},
-                     {"trials_diverged", term.diverged},
-                     {"cost_ns_per_s", cost_of(term)},
-                     {"kept", term.cost.has_value() && term.is_kept}});
+    results["terms"].push_back(row_json(row_of(term, limit_m)));
   }
-  return {
-      {"limit_m", limit_m},
-      {"terms", std::move(terms)},
-      {"full", model_json(reduction.full)},
-      {"full_covariance_0_1_s", model_json(reduction.standard)},
-      {"reduced_full_rate", model_json(reduction.at_full_rate)},
-      {"reduced", model_json(reduction.reduced)},
-      {"keeps_limit", reduction.keeps_limit},
-      {"as_honest", reduction.is_as_honest},
-      {"speedup", reduction.full.cost.median_ns_per_s / reduction.reduced.cost.median_ns_per_s}};
+  for (const auto& [key, row] : models_of(reduction)) results[key] = row_json(row);
+  results["keeps_limit"] = reduction.keeps_limit;
+  results["as_honest"] = reduction.is_as_honest;
+  results["speedup"] = reduction.full.cost.median_ns_per_s / reduction.reduced.cost.median_ns_per_s;
+  return results;
 }
 
 std::string reduction_comment(const sim::ModelReduction& reduction) {
@@ -167,7 +144,12 @@ int run(const ReduceChoice& options) {
   const int repeat = options.reduction.repeat;
   show(options.output,
        answer_json("reduce", timed_input_json(reduction.scene, repeat), reduction_json(reduction)),
-       [&] { print_reduction(reduction, repeat); });
+       [&] {
+         print_conditions(reduction, repeat);
+         print_terms(reduction);
+         print_models(reduction);
+         print_verdict(reduction);
+       });
   if (!reduction.keeps_limit || !reduction.is_as_honest) return kNoAnswer;
   if (!options.write.empty()) {
     const sim::Scene cheap = sim::with_model(reduction.scene, reduction.reduced.model);
@@ -181,9 +163,9 @@ void add_options(CLI::App& app, ReduceChoice& options) {
   add_trial_options(app, options.scene, 10'000, "of every model; in place of the scene's");
   add_repeat_option(app, options.reduction.repeat);
   add_threads_option(app, options.reduction.threads, "of what is not timed; ");
-  app.add_option("--write", options.write,
-                 "write the cheapest filter as a file for --filter, if it keeps the limit")
-      ->type_name("FILE.toml");
+  add_file_option(app, "--write", options.write,
+                  "write the cheapest filter as a file for --filter, if it keeps the limit",
+                  "FILE.toml");
   add_output_options(app, options.output);
 }
 

@@ -1,27 +1,11 @@
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <memory>
-#include <string>
-
-#include "leeway/earth/error.hpp"
 #include "leeway/logs/gnss_log.hpp"
 #include "leeway/logs/imu_log.hpp"
 #include "leeway/logs/truth_log.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/scene/receiver.hpp"
-#include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
-#include "sim/cli/answer.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -33,11 +17,8 @@ struct SceneLog {
   std::int64_t rows{0};
 };
 
-struct SceneLogs {
-  SceneLog imu{};
-  SceneLog gnss{};
-  SceneLog truth{};
-};
+/// Of the IMU, the receiver and the truth.
+using SceneLogs = std::array<SceneLog, 3>;
 
 /// A single-frequency code receiver under open sky.
 struct GnssOptions {
@@ -64,32 +45,19 @@ struct SimulateChoice {
   Output output{};
 };
 
-using Factory = std::function<sim::Trajectory(double duration_s)>;
-
-template <class Parameters>
-Factory factory(sim::Trajectory (*make)(const Parameters&)) {
-  return [make](double duration_s) {
-    Parameters parameters;
-    parameters.duration_s = duration_s;
-    return make(parameters);
-  };
+template <class Parameters, sim::Trajectory (*make)(const Parameters&)>
+sim::Trajectory lasting(double duration_s) {
+  Parameters parameters;
+  parameters.duration_s = duration_s;
+  return make(parameters);
 }
 
 // In the order of TrajectoryKind; the rest of them need a scene file.
-const std::array<Factory, 5> kFactories{factory(sim::static_trajectory), factory(sim::straight),
-                                        factory(sim::circle), factory(sim::square_loop),
-                                        factory(sim::car_drive)};
-
-sim::GnssErrorModel gnss_model(const SimulateChoice& o) {
-  const GnssOptions& g = o.gnss;
-  sim::GnssErrorModel model;
-  model.position_sigma_n_m = {g.sigma_h_m, g.sigma_h_m, g.sigma_v_m};
-  model.velocity_sigma_n_mps.setConstant(g.sigma_velocity_mps);
-  model.correlated_sigma_n_m.setConstant(g.correlated_sigma_m);
-  model.correlation_time_s = g.correlation_s;
-  model.lever_arm_b_m = o.lever_arm_b_m.value_or(Eigen::Vector3d::Zero());
-  return model;
-}
+constexpr std::array kFactories{&lasting<sim::StaticParameters, sim::static_trajectory>,
+                                &lasting<sim::StraightParameters, sim::straight>,
+                                &lasting<sim::CircleParameters, sim::circle>,
+                                &lasting<sim::SquareLoopParameters, sim::square_loop>,
+                                &lasting<sim::CarDriveParameters, sim::car_drive>};
 
 sim::Scene scene_from_options(const SimulateChoice& options) {
   const NamedImu imu = imu_of(options.imu);
@@ -100,8 +68,13 @@ sim::Scene scene_from_options(const SimulateChoice& options) {
   scene.duration_s = options.duration_s;
   scene.imu_rate_hz = options.imu_rate_hz;
   set_imu(scene, imu.name, imu.model);
-  scene.gnss.errors = gnss_model(options);
-  scene.gnss.interval_s = options.gnss.interval_s;
+  const GnssOptions& g = options.gnss;
+  scene.gnss.interval_s = g.interval_s;
+  scene.gnss.errors.position_sigma_n_m = {g.sigma_h_m, g.sigma_h_m, g.sigma_v_m};
+  scene.gnss.errors.velocity_sigma_n_mps.setConstant(g.sigma_velocity_mps);
+  scene.gnss.errors.correlated_sigma_n_m.setConstant(g.correlated_sigma_m);
+  scene.gnss.errors.correlation_time_s = g.correlation_s;
+  scene.gnss.errors.lever_arm_b_m = options.lever_arm_b_m.value_or(Eigen::Vector3d::Zero());
   return scene;
 }
 
@@ -117,7 +90,7 @@ Json options_json(const SimulateChoice& options, const sim::Scene& scene) {
           {"gnss_sigma_velocity_mps", g.sigma_velocity_mps},
           {"gnss_correlated_sigma_m", g.correlated_sigma_m},
           {"gnss_correlation_s", g.correlation_s},
-          {"lever_arm_m", json_of(options.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))}};
+          {"lever_arm_m", json_of(scene.gnss.errors.lever_arm_b_m)}};
 }
 
 std::uint64_t seed_of(const SimulateChoice& options, const sim::Scene& scene) {
@@ -132,10 +105,11 @@ Json input_json(const SimulateChoice& options, const sim::Scene& scene) {
 }
 
 Json results_json(const SceneLogs& logs, const std::filesystem::path& description) {
-  return {{"imu", logs.imu.file.string()},     {"gnss", logs.gnss.file.string()},
-          {"truth", logs.truth.file.string()}, {"scene", description.string()},
-          {"imu_increments", logs.imu.rows},   {"gnss_fixes", logs.gnss.rows},
-          {"truth_rows", logs.truth.rows}};
+  const auto& [imu, gnss, truth] = logs;
+  return {{"imu", imu.file.string()},     {"gnss", gnss.file.string()},
+          {"truth", truth.file.string()}, {"scene", description.string()},
+          {"imu_increments", imu.rows},   {"gnss_fixes", gnss.rows},
+          {"truth_rows", truth.rows}};
 }
 
 /// Number of steps of 1 / rate that fit, forgiving the rounding of their product.
@@ -193,21 +167,19 @@ SceneLogs write_logs(const SimulateChoice& options, const sim::Scene& scene) {
   if (error) throw Error(options.out.string() + ": cannot be made: " + error.message());
   const std::string end = options.gzip ? ".csv.gz" : ".csv";
   const std::uint64_t seed = seed_of(options, scene);
-  return {.imu = write_imu(options.out / ("imu" + end), scene, seed),
-          .gnss = write_gnss(options.out / ("gnss" + end), scene, seed),
-          .truth = write_truth(options.out / ("truth" + end), scene, options.truth_rate_hz)};
+  return {write_imu(options.out / ("imu" + end), scene, seed),
+          write_gnss(options.out / ("gnss" + end), scene, seed),
+          write_truth(options.out / ("truth" + end), scene, options.truth_rate_hz)};
 }
 
 void print_tables(const SimulateChoice& options, const sim::Scene& scene, const SceneLogs& logs) {
   fmt::print("Simulated {} s of '{}' into {}\n", scene.duration_s, scene.name,
              options.out.string());
   Table table({"<log", "rows", "<file"});
-  const auto add = [&table](const char* what, const SceneLog& log) {
-    table.add({what, std::to_string(log.rows), log.file.string()});
-  };
-  add("IMU increments", logs.imu);
-  add("GNSS fixes", logs.gnss);
-  add("truth", logs.truth);
+  constexpr std::array kTitles{"IMU increments", "GNSS fixes", "truth"};
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    table.add({kTitles[i], std::to_string(logs[i].rows), logs[i].file.string()});
+  }
   table.print();
   if (scene.gnss.latency_s > 0.0) {
     fmt::print("Fixes have the time they are valid at; the scene delivers them {} s later.\n",
@@ -235,18 +207,17 @@ int run(const SimulateChoice& options) {
 }
 
 void add_gnss_options(CLI::App& app, GnssOptions& g) {
-  const auto add = [&app](const char* name, double& value, const char* description) {
-    app.add_option(name, value, description)->capture_default_str();
-  };
-  app.add_option("--gnss-interval-s", g.interval_s, "time between fixes, s; the first after one")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
-  add("--gnss-sigma-h-m", g.sigma_h_m, "white position error, 1 sigma north and east, m");
-  add("--gnss-sigma-v-m", g.sigma_v_m, "white position error, 1 sigma down, m");
-  add("--gnss-sigma-velocity-mps", g.sigma_velocity_mps, "velocity error, 1 sigma per axis, m/s");
-  add("--gnss-correlated-sigma-m", g.correlated_sigma_m,
-      "slow position error (Gauss-Markov), 1 sigma per axis, m");
-  add("--gnss-correlation-s", g.correlation_s, "its correlation time, s");
+  add_default_option(app, "--gnss-interval-s", g.interval_s,
+                     "time between fixes, s; the first after one")
+      ->check(CLI::Range(1e-3, 1e6));
+  add_default_option(app, "--gnss-sigma-h-m", g.sigma_h_m,
+                     "white position error, 1 sigma north and east, m");
+  add_default_option(app, "--gnss-sigma-v-m", g.sigma_v_m, "white position error, 1 sigma down, m");
+  add_default_option(app, "--gnss-sigma-velocity-mps", g.sigma_velocity_mps,
+                     "velocity error, 1 sigma per axis, m/s");
+  add_default_option(app, "--gnss-correlated-sigma-m", g.correlated_sigma_m,
+                     "slow position error (Gauss-Markov), 1 sigma per axis, m");
+  add_default_option(app, "--gnss-correlation-s", g.correlation_s, "its correlation time, s");
 }
 
 /// A scene file says all that the options before it would.
@@ -259,25 +230,20 @@ void exclude_all(CLI::App& app, CLI::Option* scene) {
 void add_options(CLI::App& app, SimulateChoice& options) {
   app.add_option("--trajectory", options.trajectory, "the motion")
       ->transform(named<sim::TrajectoryKind>(kFactories.size()));
-  app.add_option("--duration-s", options.duration_s, "length, s")
-      ->check(CLI::Range(1.0, 1e6))
-      ->capture_default_str();
-  app.add_option("--imu-rate-hz", options.imu_rate_hz, "IMU increments per second")
-      ->check(CLI::Range(1.0, 1e4))
-      ->capture_default_str();
+  add_default_option(app, "--duration-s", options.duration_s, "length, s")
+      ->check(CLI::Range(1.0, 1e6));
+  add_default_option(app, "--imu-rate-hz", options.imu_rate_hz, "IMU increments per second")
+      ->check(CLI::Range(1.0, 1e4));
   add_imu_options(app, options.imu);
   add_gnss_options(app, options.gnss);
   add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
                  "IMU to antenna, forward, right, down, m (default: 0,0,0)");
-  exclude_all(
-      app, app.add_option("--scene", options.scene, "scene file, in place of all options above it")
-               ->type_name("FILE.toml"));
-  app.add_option("--truth-rate-hz", options.truth_rate_hz, "truth rows per second")
-      ->check(CLI::Range(0.1, 1e4))
-      ->capture_default_str();
+  exclude_all(app, add_file_option(app, "--scene", options.scene,
+                                   "scene file, in place of all options above it", "FILE.toml"));
+  add_default_option(app, "--truth-rate-hz", options.truth_rate_hz, "truth rows per second")
+      ->check(CLI::Range(0.1, 1e4));
   app.add_option("--seed", options.seed, "of the random numbers (default: 1, or the scene's)");
-  app.add_option("--out", options.out, "folder to write to; made when missing")
-      ->type_name("DIR")
+  add_file_option(app, "--out", options.out, "folder to write to; made when missing", "DIR")
       ->required();
   app.add_flag("--gzip", options.gzip, "compress the logs: imu.csv.gz and so on");
   add_json_option(app, options.output.json);

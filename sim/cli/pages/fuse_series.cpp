@@ -1,49 +1,29 @@
 #include "sim/cli/pages/fuse_series.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <limits>
 
-#include "leeway/earth/earth.hpp"
-#include "leeway/ekf/update_outcome.hpp"
 #include "leeway/model/chi_square.hpp"
 
 namespace leeway::cli {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::string> solution_columns() {
-  std::vector<std::string> names{"t_s"};
-  const auto add = [&names](const std::string& stem, std::initializer_list<const char*> axes) {
-    for (const char* axis : axes) names.push_back(stem + axis);
-  };
-  for (const char* stem : {"error_", "sigma_"}) add(stem, {"n_m", "e_m", "d_m"});
-  for (const char* stem : {"b_a_mps2_", "sigma_b_a_mps2_", "b_g_radps_", "sigma_b_g_radps_"}) {
-    add(stem, {"forward", "right", "down"});
-  }
-  return names;
-}
-
-/// The bounds that 95 % of an honest filter's NIS are within.
-std::array<double, 2> nis_band(int dof) {
-  return {chi_square_threshold(0.975, dof), chi_square_threshold(0.025, dof)};
-}
+const Eigen::Vector3d kNone = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace
-
-FuseSeries::FuseSeries()
-    : solution_(solution_columns()),
-      track_({"t_s", "east_m", "north_m", "true_east_m", "true_north_m"},
-             SeriesTable::Keep::kFirst),
-      fixes_({"t_s", "nis", "nis_low", "nis_high"}),
-      outages_({"since_s", "outage", "error_h_m", "sigma_h_m"}, SeriesTable::Keep::kFirst),
-      verdicts_(kVerdicts, SeriesTable({"t_s"}, SeriesTable::Keep::kFirst)) {}
 
 sim::ReplayObserver FuseSeries::observer() {
   sim::ReplayObserver observer;
   observer.epoch = [this](const Solution& s, const std::optional<TruthRecord>& truth) {
     add(s, truth);
   };
-  observer.fix = [this](const UpdateOutcome& update) { add(update); };
+  observer.fix = [this](const UpdateOutcome& update) {
+    // Within them are 95 % of an honest filter's.
+    const double low = chi_square_threshold(0.975, update.dof);
+    const double high = chi_square_threshold(0.025, update.dof);
+    fixes_.add({to_seconds(update.time), update.nis, low, high});
+  };
   observer.verdict = [this](Time t, Verdict verdict) {
     verdicts_[static_cast<std::size_t>(verdict)].add({to_seconds(t)});
   };
@@ -55,7 +35,7 @@ sim::ReplayObserver FuseSeries::observer() {
 
 void FuseSeries::add(const Solution& s, const std::optional<TruthRecord>& truth) {
   std::optional<Eigen::Vector3d> true_r_e_m;
-  Eigen::Vector3d error_n_m = Eigen::Vector3d::Constant(kNone);
+  Eigen::Vector3d error_n_m = kNone;
   if (truth) {
     true_r_e_m = ecef_from_geodetic(truth->nav.position);
     error_n_m = ned_to_ecef(truth->nav.position).transpose() * (s.nav.r_e_m - *true_r_e_m);
@@ -73,14 +53,8 @@ void FuseSeries::add_to_track(const Solution& s, const std::optional<Eigen::Vect
     return ned_to_ecef(*origin_).transpose() * (r_e_m - ecef_from_geodetic(*origin_));
   };
   const Eigen::Vector3d here_n_m = local(s.nav.r_e_m);
-  const Eigen::Vector3d there_n_m =
-      true_r_e_m ? local(*true_r_e_m) : Eigen::Vector3d::Constant(kNone).eval();
+  const Eigen::Vector3d there_n_m = true_r_e_m ? local(*true_r_e_m) : kNone;
   track_.add({to_seconds(s.nav.time), here_n_m.y(), here_n_m.x(), there_n_m.y(), there_n_m.x()});
-}
-
-void FuseSeries::add(const UpdateOutcome& update) {
-  const auto [low, high] = nis_band(update.dof);
-  fixes_.add({to_seconds(update.time), update.nis, low, high});
 }
 
 void FuseSeries::add_to(Json& series, const std::string& run) const {
@@ -91,8 +65,9 @@ void FuseSeries::add_to(Json& series, const std::string& run) const {
   put("track/" + run, track_);
   put("fixes/" + run, fixes_);
   put("outages/" + run, outages_);
-  for (std::size_t v = 0; v < kVerdicts; ++v) {
-    put("verdict/" + run + "/" + std::string(name(static_cast<Verdict>(v))), verdicts_[v]);
+  for (const Verdict verdict : kAll<Verdict>) {
+    put(fmt::format("verdict/{}/{}", run, name(verdict)),
+        verdicts_[static_cast<std::size_t>(verdict)]);
   }
 }
 

@@ -3,13 +3,7 @@
 /// with the log.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <optional>
-#include <string>
-
 #include "leeway/sim/replay/replay.hpp"
-#include "leeway/strapdown/nav_state.hpp"
 #include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
@@ -17,7 +11,7 @@ namespace leeway::cli {
 /// It is observed in place: not to be moved.
 class FuseSeries {
  public:
-  FuseSeries();
+  FuseSeries() = default;
   FuseSeries(const FuseSeries&) = delete;
   FuseSeries& operator=(const FuseSeries&) = delete;
 
@@ -28,15 +22,21 @@ class FuseSeries {
   void add_to(Json& series, const std::string& run) const;
 
  private:
+  using Keep = SeriesTable::Keep;
+
   void add(const Solution& solution, const std::optional<TruthRecord>& truth);
   void add_to_track(const Solution& solution, const std::optional<Eigen::Vector3d>& true_r_e_m);
-  void add(const UpdateOutcome& update);
 
-  SeriesTable solution_;
-  SeriesTable track_;
-  SeriesTable fixes_;
-  SeriesTable outages_;
-  std::vector<SeriesTable> verdicts_;
+  SeriesTable solution_{{"t_s", "error_n_m", "error_e_m", "error_d_m", "sigma_n_m", "sigma_e_m",
+                         "sigma_d_m", "b_a_mps2_forward", "b_a_mps2_right", "b_a_mps2_down",
+                         "sigma_b_a_mps2_forward", "sigma_b_a_mps2_right", "sigma_b_a_mps2_down",
+                         "b_g_radps_forward", "b_g_radps_right", "b_g_radps_down",
+                         "sigma_b_g_radps_forward", "sigma_b_g_radps_right",
+                         "sigma_b_g_radps_down"}};
+  SeriesTable track_{{"t_s", "east_m", "north_m", "true_east_m", "true_north_m"}, Keep::kFirst};
+  SeriesTable fixes_{{"t_s", "nis", "nis_low", "nis_high"}};
+  SeriesTable outages_{{"since_s", "outage", "error_h_m", "sigma_h_m"}, Keep::kFirst};
+  std::vector<SeriesTable> verdicts_{kVerdicts, SeriesTable({"t_s"}, Keep::kFirst)};
   std::optional<Geodetic> origin_{};  ///< of the track
 };
 

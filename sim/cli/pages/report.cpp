@@ -1,10 +1,7 @@
 #include "sim/cli/pages/report.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cctype>
-#include <string>
 
 #include "sim/cli/output.hpp"
 #include "sim/report/report_template.hpp"
@@ -19,23 +16,19 @@ std::string& command_line() {
   return line;
 }
 
+std::string with(std::string_view text, char replaced, std::string_view by) {
+  std::string changed;
+  for (const char c : text) changed += c == replaced ? by : std::string_view(&c, 1);
+  return changed;
+}
+
 /// As a shell reads it as one word.
 std::string as_word(const std::string& text) {
   const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 ||
            std::string_view("-_./,:=+@%").find(static_cast<char>(c)) != std::string_view::npos;
   });
-  if (plain) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-/// JSON that cannot end the element it stands in.
-std::string as_element_text(const Json& json) {
-  std::string safe;
-  for (const char c : text_of(json)) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return safe;
+  return plain ? text : "'" + with(text, '\'', "'\\''") + "'";
 }
 
 }  // namespace
@@ -57,7 +50,7 @@ void write_report(const std::filesystem::path& path, Json answer, Json series) {
   answer["series"] = std::move(series);
   const std::size_t mark = kReportTemplate.find(kDataMark);
   std::string page(kReportTemplate.substr(0, mark));
-  page += as_element_text(answer);
+  page += with(text_of(answer), '<', "\\u003c");  // cannot end the element
   page += kReportTemplate.substr(mark + kDataMark.size());
   write_file(path, page);
 }

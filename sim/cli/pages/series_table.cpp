@@ -40,9 +40,6 @@ Json column_json(const std::vector<double>& values, bool as_double) {
 
 }  // namespace
 
-SeriesTable::SeriesTable(std::vector<std::string> columns, Keep keep)
-    : names_(std::move(columns)), keep_(keep) {}
-
 void SeriesTable::add(std::span<const double> row) {
   const std::vector<double> values(row.begin(), row.end());
   if (in_last_ > 0) {

@@ -4,7 +4,6 @@
 
 #include <initializer_list>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "sim/cli/json.hpp"
@@ -23,7 +22,8 @@ class SeriesTable {
     kFirst,     ///< the first row
   };
 
-  explicit SeriesTable(std::vector<std::string> columns, Keep keep = Keep::kExtremes);
+  explicit SeriesTable(std::vector<std::string> columns, Keep keep = Keep::kExtremes)
+      : names_(std::move(columns)), keep_(keep) {}
 
   /// @pre as many values as columns. NaN: missing.
   void add(std::span<const double> row);

@@ -1,11 +1,10 @@
 #include "sim/cli/tables/atlas_tables.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "sim/cli/output.hpp"
+#include <sstream>
 
 namespace leeway::cli {
 namespace {
@@ -16,8 +15,8 @@ std::string with_unit(double figure, const std::string& unit) {
 }
 
 /// "error, m", or what a ratio is called.
-std::string figure_heading(const sim::AtlasScene& scene) {
-  return scene.unit.empty() ? "figure" : "figure, " + scene.unit;
+std::string figure_heading(const sim::AtlasScene& scene, const std::string& figure = "figure") {
+  return scene.unit.empty() ? figure : figure + ", " + scene.unit;
 }
 
 std::string limits_text(const sim::AtlasScene& scene) {
@@ -34,14 +33,34 @@ std::string reported_text(const sim::AtlasScene& scene, const sim::AtlasCell& ce
   return sim::fails_silently(scene.limits, cell) ? "NOTHING" : cell.reported;
 }
 
+Row row_of(const sim::AtlasScene& scene, const sim::AtlasCell& cell) {
+  return {{"", "scene", scene.key},
+          {"", "title", scene.title},
+          {"<of", "group", name(cell.group)},
+          {"<variant", "variant", cell.variant},
+          {"<condition", "condition", cell.condition},
+          {figure_heading(scene), "", with_unit(cell.figure, "")},
+          {"", "figure", cell.figure},
+          {"", "figure_unit", scene.unit},
+          {"<verdict", "verdict", verdict_text(scene, cell)},
+          {"<reported", "", reported_text(scene, cell)},
+          {"", "reported", cell.reported},
+          {"", "silent", sim::fails_silently(scene.limits, cell)}};
+}
+
+Row row_of(const sim::AtlasSurprise& s) {
+  return {{"<scene", "scene", s.scene},
+          {"<variant", "variant", s.variant},
+          {"<condition", "condition", s.condition},
+          {"<expected", "expected", s.expected},
+          {"<found", "found", s.found}};
+}
+
 void print_scene(const sim::AtlasResult& result) {
   const sim::AtlasScene& scene = result.scene;
   fmt::print("\n{}: {}\n  {}; {}\n", scene.key, scene.title, scene.figure, limits_text(scene));
-  Table table({"<of", "<variant", "<condition", figure_heading(scene), "<verdict", "<reported"});
-  for (const sim::AtlasCell& cell : result.cells) {
-    table.add({std::string(name(cell.group)), cell.variant, cell.condition,
-               with_unit(cell.figure, ""), verdict_text(scene, cell), reported_text(scene, cell)});
-  }
+  Table table = table_of(row_of(scene, {}));
+  for (const sim::AtlasCell& cell : result.cells) add_row(table, row_of(scene, cell));
   table.print();
 }
 
@@ -63,20 +82,39 @@ std::string matrix_entry(const sim::AtlasResult& result, sim::AtlasGroup group) 
                      with_unit(worst->figure, result.scene.unit));
 }
 
-std::string markdown_matrix(const std::vector<sim::AtlasResult>& results) {
-  std::string head = "| scene |";
-  std::string rule = "|---|";
-  for (std::size_t g = 0; g < kAll<sim::AtlasGroup>.size(); ++g) {
-    head += fmt::format(" {} |", name(static_cast<sim::AtlasGroup>(g)));
-    rule += "---|";
+/// The words in lines of at most 120 characters.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kLongest = 120;
+  std::string lines;
+  std::size_t length = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word; lines += word) {
+    const bool fits = length + 1 + word.size() <= kLongest;
+    if (length > 0) lines += fits ? ' ' : '\n';
+    length = length > 0 && fits ? length + 1 + word.size() : word.size();
   }
-  std::string text = head + "\n" + rule + "\n";
+  return lines;
+}
+
+std::string markdown_row(const std::vector<std::string>& cells) {
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+
+std::string markdown_head(const std::vector<std::string>& cells) {
+  std::string rule = "|";
+  for (std::size_t i = 0; i < cells.size(); ++i) rule += "---|";
+  return markdown_row(cells) + rule + "\n";
+}
+
+std::string markdown_matrix(const std::vector<sim::AtlasResult>& results) {
+  std::vector<std::string> head{"scene"};
+  head.insert(head.end(), kNames<sim::AtlasGroup>.begin(), kNames<sim::AtlasGroup>.end());
+  std::string text = markdown_head(head);
   for (const sim::AtlasResult& result : results) {
-    text += fmt::format("| [{}](atlas/{}.md) |", result.scene.title, result.scene.key);
-    for (std::size_t g = 0; g < kAll<sim::AtlasGroup>.size(); ++g) {
-      text += fmt::format(" {} |", matrix_entry(result, static_cast<sim::AtlasGroup>(g)));
-    }
-    text += "\n";
+    const sim::AtlasScene& scene = result.scene;
+    std::vector<std::string> cells{fmt::format("[{}](atlas/{}.md)", scene.title, scene.key)};
+    for (const auto group : kAll<sim::AtlasGroup>) cells.push_back(matrix_entry(result, group));
+    text += markdown_row(cells);
   }
   return text;
 }
@@ -109,22 +147,19 @@ std::string markdown_cell(const sim::AtlasResult& result, const std::string& var
 std::string markdown_scene(const sim::AtlasResult& result) {
   const sim::AtlasScene& scene = result.scene;
   const auto conditions = each_once(result, &sim::AtlasCell::condition);
-  std::string text = fmt::format("\n## {}\n\n`{}`, [{}.md](atlas/{}.md). Figure: {}{}; {}.\n\n",
-                                 scene.title, scene.key, scene.key, scene.key, scene.figure,
-                                 scene.unit.empty() ? "" : ", " + scene.unit, limits_text(scene));
-  std::string rule = "|---|";
-  text += "| variant |";
-  for (const std::string& condition : conditions) {
-    text += fmt::format(" {} |", condition);
-    rule += "---|";
-  }
-  text += "\n" + rule + "\n";
+  std::string text = fmt::format("\n## {}\n\n", scene.title);
+  text += wrapped(fmt::format("`{}`, [{}.md](atlas/{}.md). Figure: {}; {}.", scene.key, scene.key,
+                              scene.key, figure_heading(scene, scene.figure), limits_text(scene)));
+  text += "\n\n";
+  std::vector<std::string> head{"variant"};
+  head.insert(head.end(), conditions.begin(), conditions.end());
+  text += markdown_head(head);
   for (const std::string& variant : each_once(result, &sim::AtlasCell::variant)) {
-    text += fmt::format("| {} |", variant);
+    std::vector<std::string> cells{variant};
     for (const std::string& condition : conditions) {
-      text += fmt::format(" {} |", markdown_cell(result, variant, condition));
+      cells.push_back(markdown_cell(result, variant, condition));
     }
-    text += "\n";
+    text += markdown_row(cells);
   }
   return text;
 }
@@ -134,14 +169,9 @@ std::string markdown_scene(const sim::AtlasResult& result) {
 void print_atlas_list() {
   Table table({"<scene", "<title", "<figure"});
   for (const sim::AtlasScene& scene : sim::atlas_scenes()) {
-    table.add({scene.key, scene.title,
-               scene.unit.empty() ? scene.figure : scene.figure + ", " + scene.unit});
+    table.add({scene.key, scene.title, figure_heading(scene, scene.figure)});
   }
   table.print();
-}
-
-void print_atlas(const std::vector<sim::AtlasResult>& results) {
-  for (const sim::AtlasResult& result : results) print_scene(result);
 }
 
 bool any_silent(const std::vector<sim::AtlasResult>& results) {
@@ -152,8 +182,9 @@ bool any_silent(const std::vector<sim::AtlasResult>& results) {
   });
 }
 
-void print_atlas_findings(const std::vector<sim::AtlasResult>& results,
-                          const std::vector<sim::AtlasSurprise>& surprises) {
+void print_atlas(const std::vector<sim::AtlasResult>& results,
+                 const std::vector<sim::AtlasSurprise>& surprises) {
+  for (const sim::AtlasResult& result : results) print_scene(result);
   if (any_silent(results)) {
     fmt::print("\nVariants of the library that fail, and no detector says so: see NOTHING above\n");
   }
@@ -163,10 +194,8 @@ void print_atlas_findings(const std::vector<sim::AtlasResult>& results,
     return;
   }
   fmt::print("\n{} cells are not as expected\n", surprises.size());
-  Table table({"<scene", "<variant", "<condition", "<expected", "<found"});
-  for (const sim::AtlasSurprise& s : surprises) {
-    table.add({s.scene, s.variant, s.condition, s.expected, s.found});
-  }
+  Table table = table_of(row_of(surprises.front()));
+  for (const sim::AtlasSurprise& s : surprises) add_row(table, row_of(s));
   table.print();
 }
 
@@ -174,41 +203,26 @@ Json atlas_json(const std::vector<sim::AtlasResult>& results,
                 const std::vector<sim::AtlasSurprise>& surprises) {
   Json cells = Json::array();
   for (const sim::AtlasResult& result : results) {
-    const sim::AtlasScene& scene = result.scene;
     for (const sim::AtlasCell& cell : result.cells) {
-      cells.push_back({{"scene", scene.key},
-                       {"title", scene.title},
-                       {"group", name(cell.group)},
-                       {"variant", cell.variant},
-                       {"condition", cell.condition},
-                       {"figure", cell.figure},
-                       {"figure_unit", scene.unit},
-                       {"verdict", verdict_text(scene, cell)},
-                       {"reported", cell.reported},
-                       {"silent", sim::fails_silently(scene.limits, cell)}});
+      cells.push_back(row_json(row_of(result.scene, cell)));
     }
   }
   Json unexpected = Json::array();
-  for (const sim::AtlasSurprise& s : surprises) {
-    unexpected.push_back({{"scene", s.scene},
-                          {"variant", s.variant},
-                          {"condition", s.condition},
-                          {"expected", s.expected},
-                          {"found", s.found}});
-  }
+  for (const sim::AtlasSurprise& s : surprises) unexpected.push_back(row_json(row_of(s)));
   return {{"cells", std::move(cells)}, {"unexpected", std::move(unexpected)}};
 }
 
 std::string atlas_markdown(const std::vector<sim::AtlasResult>& results) {
-  std::string text =
-      "# The failure atlas\n\n"
+  std::string text = "# The failure atlas\n\n";
+  text += wrapped(
       "Scenes that are each built to break a method, run against every way of running the filter. "
-      "Written by `leeway atlas --markdown docs/atlas.md`;\nthe verdicts are checked by the tests. "
-      "A figure is the larger the worse. In the matrix: the worst of each group of variants. "
-      "*Not offered* are\nmethods that the library does not have: they are what a scene shows "
-      "failing. Every variant that the library offers and that fails is reported by\none of its "
-      "detectors, in brackets.\n\n";
-  text += markdown_matrix(results);
+      "Written by `leeway atlas --markdown docs/atlas.md`; the verdicts are checked by the tests. "
+      "A figure is the larger the worse. In the matrix: the worst of each group of variants. *Not "
+      "offered* are methods that the library does not have: they are what a scene shows failing. "
+      "Every variant that the library offers and that fails is reported by one of its detectors, "
+      "in "
+      "brackets.");
+  text += "\n\n" + markdown_matrix(results);
   for (const sim::AtlasResult& result : results) text += markdown_scene(result);
   return text;
 }

@@ -2,24 +2,18 @@
 /// What leeway atlas writes.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "leeway/sim/atlas/atlas.hpp"
 #include "leeway/sim/atlas/atlas_expected.hpp"
-#include "sim/cli/json.hpp"
+#include "sim/cli/answer.hpp"
 
 namespace leeway::cli {
 
 /// Key, title and figure of every scene.
 void print_atlas_list();
 
-/// A table for each scene: variants by conditions.
-void print_atlas(const std::vector<sim::AtlasResult>& results);
-
-/// Offered variants that fail without a word, and cells that are not as expected.
-void print_atlas_findings(const std::vector<sim::AtlasResult>& results,
-                          const std::vector<sim::AtlasSurprise>& surprises);
+/// A table for each scene, variants by conditions; then the offered variants that fail without a
+/// word, and the cells that are not as expected.
+void print_atlas(const std::vector<sim::AtlasResult>& results,
+                 const std::vector<sim::AtlasSurprise>& surprises);
 
 /// @returns whether an offered variant fails without a word
 bool any_silent(const std::vector<sim::AtlasResult>& results);

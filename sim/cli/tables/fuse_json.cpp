@@ -1,5 +1,3 @@
-#include <spdlog/fmt/fmt.h>
-
 #include "sim/cli/tables/fuse_tables.hpp"
 
 namespace leeway::cli {
@@ -9,35 +7,26 @@ Json path_json(const std::filesystem::path& path) {
   return path.empty() ? Json() : Json(path.string());
 }
 
-Json summary_json(const std::filesystem::path& path, const std::string& format,
-                  const LogSummary& summary) {
+Json log_json(const FuseLog& log) {
   Json damaged = Json::object();
-  for (std::size_t d = 0; d < kLineDamageCount; ++d) {
-    if (summary.damaged[d] > 0) {
-      damaged[std::string(name(static_cast<LineDamage>(d)))] = summary.damaged[d];
-    }
+  for (const LineDamage damage : kAll<LineDamage>) {
+    const auto count = log.summary.damaged[static_cast<std::size_t>(damage)];
+    if (count > 0) damaged[std::string(name(damage))] = count;
   }
-  return {{"path", path.string()},
-          {"format", format},
-          {"lines", summary.lines},
-          {"records", summary.records},
-          {"damaged_lines", summary.damaged_lines()},
+  const std::string& incomplete = log.summary.incomplete;
+  return {{"path", log.path.string()},
+          {"format", log.format},
+          {"lines", log.summary.lines},
+          {"records", log.summary.records},
+          {"damaged_lines", log.summary.damaged_lines()},
           {"damaged", damaged},
-          {"messages", summary.messages},
-          {"incomplete", summary.incomplete.empty() ? Json() : Json(summary.incomplete)}};
+          {"messages", log.summary.messages},
+          {"incomplete", incomplete.empty() ? Json() : Json(incomplete)}};
 }
 
 Json logs_json(const FuseJob& job) {
-  Json logs{{"imu", summary_json(job.input.imu, job.imu_format, job.result.imu_summary)},
-            {"gnss", summary_json(job.input.gnss, job.gnss_format, job.result.gnss_summary)}};
-  for (std::size_t a = 0; a < kAidings.size(); ++a) {
-    if (job.input.aidings[a].empty()) continue;
-    logs[kAidings[a].name] =
-        summary_json(job.input.aidings[a], "CSV", job.result.aiding_summaries[a]);
-  }
-  if (!job.input.truth.empty()) {
-    logs["truth"] = summary_json(job.input.truth, "CSV", job.result.truth_summary);
-  }
+  Json logs;
+  for (const FuseLog& log : logs_of(job)) logs[log.key] = log_json(log);
   return logs;
 }
 
@@ -51,7 +40,7 @@ Json health_json(const sim::ReplayResult& r) {
           {"repairs", h.repairs},
           {"resets", h.resets},
           {"realignments", h.realignments},
-          {"mount_rpy_deg", r.mount_rpy_deg ? json_of(r.mount_rpy_deg) : Json()}};
+          {"mount_rpy_deg", json_of(r.mount_rpy_deg)}};
 }
 
 Json solution_json(const FuseJob& job) {
@@ -66,8 +55,8 @@ Json solution_json(const FuseJob& job) {
 
 Json verdicts_json(const std::array<std::uint64_t, kVerdicts>& counts) {
   Json verdicts = Json::object();
-  for (std::size_t v = 0; v < kVerdicts; ++v) {
-    verdicts[std::string(name(static_cast<Verdict>(v)))] = counts[v];
+  for (const Verdict verdict : kAll<Verdict>) {
+    verdicts[std::string(name(verdict))] = counts[static_cast<std::size_t>(verdict)];
   }
   return verdicts;
 }
@@ -80,28 +69,13 @@ Json rms_json(const sim::RmsErrors& rms) {
           {"attitude_deg", rms.attitude_deg}};
 }
 
-Json outage_json(const FuseJob& job, const sim::OutageResult& r) {
-  const auto scored = [&r](double value) {
-    return r.against == sim::Against::kNothing ? Json() : Json(value);
-  };
-  Json against;
-  if (r.against == sim::Against::kReference) against = "reference";
-  if (r.against == sim::Against::kGnss) against = "gnss";
-  Json outage{{"start_s", r.outage.start_s},
-              {"duration_s", r.outage.duration_s},
-              {"end_error_h_m", scored(r.end_error_h_m)},
-              {"end_error_v_m", scored(r.end_error_v_m)},
-              {"max_error_h_m", scored(r.max_error_h_m)},
-              {"end_sigma_h_m", scored(r.end_sigma_h_m)},
-              {"against", against}};
-  if (!job.drive.empty()) outage["drive"] = job.drive;
-  return outage;
-}
-
 Json outages_json(const std::vector<FuseJob>& jobs) {
   Json outages = Json::array();
   for (const FuseJob& job : jobs) {
-    for (const sim::OutageResult& r : job.result.outages) outages.push_back(outage_json(job, r));
+    for (const sim::OutageResult& outage : job.result.outages) {
+      outages.push_back(row_json(row_of(job, outage)));
+      if (!job.drive.empty()) outages.back()["drive"] = job.drive;
+    }
   }
   return outages;
 }
@@ -109,15 +83,7 @@ Json outages_json(const std::vector<FuseJob>& jobs) {
 Json summary_json(const std::vector<sim::OutageResult>& outages) {
   Json summary = Json::array();
   for (const sim::OutageSummary& s : sim::summarize(outages)) {
-    const auto scored = [&s](double value) { return s.count > 0 ? Json(value) : Json(); };
-    summary.push_back({{"duration_s", s.duration_s},
-                       {"count", s.count},
-                       {"unscored", s.unscored},
-                       {"rms_end_h_m", scored(s.rms_end_h_m)},
-                       {"median_end_h_m", scored(s.median_end_h_m)},
-                       {"max_end_h_m", scored(s.max_end_h_m)},
-                       {"rms_end_v_m", scored(s.rms_end_v_m)},
-                       {"rms_over_sigma_h", scored(s.rms_over_sigma_h)}});
+    summary.push_back(row_json(row_of(s)));
   }
   return summary;
 }
@@ -142,11 +108,12 @@ Json drives_json(const std::vector<FuseJob>& jobs) {
 Json input_json(const FuseOptions& o, const std::string& imu_name) {
   Json input;
   if (o.logs.drives.empty()) {
-    input = {{"imu", path_json(o.logs.imu)}, {"gnss", path_json(o.logs.gnss)}};
+    const sim::ReplayInput& files = o.logs.files;
+    input = {{"imu", path_json(files.imu)}, {"gnss", path_json(files.gnss)}};
     for (std::size_t a = 0; a < kAidings.size(); ++a) {
-      input[kAidings[a].name] = path_json(o.logs.aidings[a]);
+      input[kAidings[a].name] = path_json(files.aidings[a]);
     }
-    input.update({{"truth", path_json(o.logs.truth)},
+    input.update({{"truth", path_json(files.truth)},
                   {"outages", path_json(o.logs.outages)},
                   {"mount_rpy_deg", json_of(o.logs.mount_rpy_deg)}});
   } else {
@@ -161,7 +128,7 @@ Json input_json(const FuseOptions& o, const std::string& imu_name) {
                 {"mount_axes", o.logs.mount_axes},
                 {"lever_arm_m", json_of(o.lever_arm_b_m.value_or(Eigen::Vector3d::Zero()))},
                 {"imu_model", imu_name},
-                {"rate_meaning", name(o.logs.rate_meaning)},
+                {"rate_meaning", name(o.logs.files.imu_options.meaning)},
                 {"scheme", name(o.filter.strapdown.scheme)},
                 {"gnss_correlation_s", o.filter.gnss_correlation_s},
                 {"gnss_position_sigma_scale", scale.x()},
@@ -181,9 +148,8 @@ Json fuse_json(const FuseOptions& options, const std::string& imu_name,
                {"verdicts", verdicts_json(totals.verdicts)},
                {"nis_mean", totals.nis_mean},
                {"nis_dof_mean", totals.nis_dof_mean}};
-  bool has_truth = false;
-  for (const FuseJob& job : jobs) has_truth = has_truth || !job.input.truth.empty();
-  if (has_truth) results["rms"] = rms_json(totals.rms);
+  const auto has_truth = [](const FuseJob& job) { return !job.input.truth.empty(); };
+  if (std::ranges::any_of(jobs, has_truth)) results["rms"] = rms_json(totals.rms);
   if (options.logs.drives.empty()) {
     results["solution"] = solution_json(jobs.front());
     results["logs"] = logs_json(jobs.front());

@@ -1,12 +1,9 @@
 #include "sim/cli/tables/fuse_tables.hpp"
 
-#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <limits>
-
-#include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -15,67 +12,40 @@ std::uint64_t count(const sim::ReplayResult& result, Verdict verdict) {
   return result.verdicts[static_cast<std::size_t>(verdict)];
 }
 
-/// Weighted means that skip what is not defined.
-class Mean {
- public:
-  void add(double value, double weight) {
-    if (weight <= 0.0 || !std::isfinite(value)) return;
-    sum_ += value * weight;
-    weight_ += weight;
+/// Weighted by a count, over the runs in which the value is defined.
+template <class Value, class Weight>
+double mean(const std::vector<FuseJob>& jobs, const Value& value, const Weight& weight) {
+  double sum = 0.0;
+  double all = 0.0;
+  for (const FuseJob& job : jobs) {
+    const auto w = static_cast<double>(weight(job.result));
+    if (w <= 0.0 || !std::isfinite(value(job.result))) continue;
+    sum += value(job.result) * w;
+    all += w;
   }
-  double mean() const {
-    return weight_ > 0.0 ? sum_ / weight_ : std::numeric_limits<double>::quiet_NaN();
-  }
-
- private:
-  double sum_{0.0};
-  double weight_{0.0};
-};
+  return all > 0.0 ? sum / all : std::numeric_limits<double>::quiet_NaN();
+}
 
 sim::RmsErrors pooled_rms(const std::vector<FuseJob>& jobs) {
   sim::RmsErrors pooled;
-  const auto pool = [&jobs](double sim::RmsErrors::*rms) {
-    Mean square;
-    for (const FuseJob& job : jobs) {
-      square.add(std::pow(job.result.rms.*rms, 2), static_cast<double>(job.result.rms.epochs));
-    }
-    return std::sqrt(square.mean());
-  };
   for (const FuseJob& job : jobs) pooled.epochs += job.result.rms.epochs;
-  pooled.horizontal_m = pool(&sim::RmsErrors::horizontal_m);
-  pooled.vertical_m = pool(&sim::RmsErrors::vertical_m);
-  pooled.velocity_mps = pool(&sim::RmsErrors::velocity_mps);
-  pooled.attitude_deg = pool(&sim::RmsErrors::attitude_deg);
+  for (double sim::RmsErrors::*rms :
+       {&sim::RmsErrors::horizontal_m, &sim::RmsErrors::vertical_m, &sim::RmsErrors::velocity_mps,
+        &sim::RmsErrors::attitude_deg}) {
+    pooled.*rms = std::sqrt(mean(
+        jobs, [rms](const sim::ReplayResult& r) { return std::pow(r.rms.*rms, 2); },
+        [](const sim::ReplayResult& r) { return r.rms.epochs; }));
+  }
   return pooled;
 }
 
-const char* against_text(sim::Against against) {
-  switch (against) {
-    case sim::Against::kReference:
-      return "reference";
-    case sim::Against::kGnss:
-      return "withheld fix";
-    case sim::Against::kNothing:
-      break;
-  }
-  return "nothing there";
-}
-
 void print_inputs(const FuseJob& job) {
-  Table table({"<log", "<format", "lines", "damaged", "<file"});
-  const auto add = [&table](const char* log, const std::string& format, const LogSummary& summary,
-                            const std::filesystem::path& path) {
-    table.add({log, format, std::to_string(summary.lines), std::to_string(summary.damaged_lines()),
-               path.string()});
-  };
-  add("IMU", job.imu_format, job.result.imu_summary, job.input.imu);
-  add("GNSS", job.gnss_format, job.result.gnss_summary, job.input.gnss);
-  for (std::size_t a = 0; a < kAidings.size(); ++a) {
-    if (job.input.aidings[a].empty()) continue;
-    add(kAidings[a].name, "CSV", job.result.aiding_summaries[a], job.input.aidings[a]);
-  }
-  if (!job.input.truth.empty()) add("truth", "CSV", job.result.truth_summary, job.input.truth);
   fmt::print("Input\n");
+  Table table({"<log", "<format", "lines", "damaged", "<file"});
+  for (const FuseLog& log : logs_of(job)) {
+    table.add({log.title, log.format, std::to_string(log.summary.lines),
+               std::to_string(log.summary.damaged_lines()), log.path.string()});
+  }
   table.print();
 }
 
@@ -96,10 +66,9 @@ void print_run(const FuseJob& job) {
     fmt::print("\nNo solution: {}\n", why_no_solution(r));
   }
   Table verdicts({"<verdict", "inputs"});
-  for (std::size_t v = 0; v < kVerdicts; ++v) {
-    if (r.verdicts[v] > 0) {
-      verdicts.add({std::string(name(static_cast<Verdict>(v))), std::to_string(r.verdicts[v])});
-    }
+  for (const Verdict verdict : kAll<Verdict>) {
+    if (count(r, verdict) == 0) continue;
+    verdicts.add({std::string(name(verdict)), std::to_string(count(r, verdict))});
   }
   verdicts.print();
   const FuseTotals totals = totals_of({job});
@@ -138,71 +107,100 @@ void print_drives(const std::vector<FuseJob>& jobs) {
 }
 
 void print_outage_summary(const std::vector<sim::OutageResult>& outages) {
-  bool reference = false;
-  bool gnss = false;
-  for (const sim::OutageResult& r : outages) {
-    reference = reference || r.against == sim::Against::kReference;
-    gnss = gnss || r.against == sim::Against::kGnss;
-  }
+  const auto any = [&outages](sim::Against against) {
+    return std::ranges::count(outages, against, &sim::OutageResult::against) > 0;
+  };
+  const bool reference = any(sim::Against::kReference);
+  const bool gnss = any(sim::Against::kGnss);
   fmt::print("\nOutages: error at the end against {}\n",
              reference && gnss ? "the reference, where there is none against the withheld fixes"
              : gnss            ? "the withheld fixes"
                                : "the reference");
-  Table table({"duration, s", "count", "unscored", "RMS h, m", "median h, m", "largest h, m",
-               "RMS v, m", "RMS h / sigma"});
-  for (const sim::OutageSummary& s : sim::summarize(outages)) {
-    const auto cell = [&s](double value) { return s.count > 0 ? number(value, 2) : "-"; };
-    table.add({fmt::format("{:g}", s.duration_s), std::to_string(s.count),
-               std::to_string(s.unscored), cell(s.rms_end_h_m), cell(s.median_end_h_m),
-               cell(s.max_end_h_m), cell(s.rms_end_v_m), cell(s.rms_over_sigma_h)});
-  }
+  const std::vector<sim::OutageSummary> summaries = sim::summarize(outages);
+  Table table = table_of(row_of(summaries.front()));
+  for (const sim::OutageSummary& s : summaries) add_row(table, row_of(s));
   table.print();
 }
 
 void print_outages(const std::vector<FuseJob>& jobs) {
   fmt::print("\nOutages one by one\n");
-  Table table({"<run", "start, s", "duration, s", "end h, m", "end v, m", "largest h, m",
-               "sigma h, m", "<against"});
+  Table table = table_of(row_of({}, sim::OutageResult{}));
   for (const FuseJob& job : jobs) {
-    for (const sim::OutageResult& r : job.result.outages) {
-      const bool scored = r.against != sim::Against::kNothing;
-      const auto cell = [scored](double value) { return scored ? number(value, 2) : "-"; };
-      table.add({job.drive.empty() ? "-" : job.drive, number(r.outage.start_s, 2),
-                 fmt::format("{:g}", r.outage.duration_s), cell(r.end_error_h_m),
-                 cell(r.end_error_v_m), cell(r.max_error_h_m), cell(r.end_sigma_h_m),
-                 against_text(r.against)});
-    }
+    for (const sim::OutageResult& r : job.result.outages) add_row(table, row_of(job, r));
   }
   table.print();
 }
 
-void warn_of_log(const char* log, const std::filesystem::path& path, const LogSummary& summary) {
+void warn_of(const FuseLog& log) {
+  const LogSummary& summary = log.summary;
   if (summary.damaged_lines() > 0) {
-    spdlog::warn("{} log {}: {} of {} lines are damaged and not used", log, path.string(),
+    spdlog::warn("{} log {}: {} of {} lines are damaged and not used", log.title, log.path.string(),
                  summary.damaged_lines(), summary.lines);
     for (const std::string& message : summary.messages) spdlog::warn("  {}", message);
   }
   if (!summary.incomplete.empty()) {
-    spdlog::warn("{} log {} ends early: {}", log, path.string(), summary.incomplete);
+    spdlog::warn("{} log {} ends early: {}", log.title, log.path.string(), summary.incomplete);
   }
 }
 
 }  // namespace
 
+std::vector<FuseLog> logs_of(const FuseJob& job) {
+  const sim::ReplayInput& in = job.input;
+  const sim::ReplayResult& r = job.result;
+  std::vector<FuseLog> logs{{"imu", "IMU", job.imu_format, in.imu, r.imu_summary},
+                            {"gnss", "GNSS", job.gnss_format, in.gnss, r.gnss_summary}};
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    if (in.aidings[a].empty()) continue;
+    const char* name = kAidings[a].name;
+    logs.push_back({name, name, "CSV", in.aidings[a], r.aiding_summaries[a]});
+  }
+  if (!in.truth.empty()) logs.push_back({"truth", "truth", "CSV", in.truth, r.truth_summary});
+  return logs;
+}
+
+Row row_of(const FuseJob& job, const sim::OutageResult& r) {
+  const bool by_reference = r.against == sim::Against::kReference;
+  const bool is_scored = r.against != sim::Against::kNothing;
+  const auto scored = [is_scored](double value) { return is_scored ? Json(value) : Json(); };
+  return {{"<run", "", job.drive.empty() ? "-" : job.drive},
+          {"start, s", "start_s", r.outage.start_s, 2},
+          {"duration, s", "", fmt::format("{:g}", r.outage.duration_s)},
+          {"", "duration_s", r.outage.duration_s},
+          {"end h, m", "end_error_h_m", scored(r.end_error_h_m), 2},
+          {"end v, m", "end_error_v_m", scored(r.end_error_v_m), 2},
+          {"largest h, m", "max_error_h_m", scored(r.max_error_h_m), 2},
+          {"sigma h, m", "end_sigma_h_m", scored(r.end_sigma_h_m), 2},
+          {"<against", "",
+           by_reference ? "reference"
+           : is_scored  ? "withheld fix"
+                        : "nothing there"},
+          {"", "against", is_scored ? Json(by_reference ? "reference" : "gnss") : Json()}};
+}
+
+Row row_of(const sim::OutageSummary& s) {
+  const auto scored = [&s](double value) { return s.count > 0 ? Json(value) : Json(); };
+  return {{"duration, s", "", fmt::format("{:g}", s.duration_s)},
+          {"", "duration_s", s.duration_s},
+          {"count", "count", s.count},
+          {"unscored", "unscored", s.unscored},
+          {"RMS h, m", "rms_end_h_m", scored(s.rms_end_h_m), 2},
+          {"median h, m", "median_end_h_m", scored(s.median_end_h_m), 2},
+          {"largest h, m", "max_end_h_m", scored(s.max_end_h_m), 2},
+          {"RMS v, m", "rms_end_v_m", scored(s.rms_end_v_m), 2},
+          {"RMS h / sigma", "rms_over_sigma_h", scored(s.rms_over_sigma_h), 2}};
+}
+
 FuseTotals totals_of(const std::vector<FuseJob>& jobs) {
   FuseTotals totals;
-  Mean nis;
-  Mean dof;
   for (const FuseJob& job : jobs) {
     const sim::ReplayResult& r = job.result;
     for (std::size_t v = 0; v < kVerdicts; ++v) totals.verdicts[v] += r.verdicts[v];
-    const auto fused = static_cast<double>(count(r, Verdict::kFused));
-    nis.add(r.nis_mean, fused);
-    dof.add(r.nis_dof_mean, fused);
     totals.outages.insert(totals.outages.end(), r.outages.begin(), r.outages.end());
   }
-  totals.nis_mean = nis.mean();
-  totals.nis_dof_mean = dof.mean();
+  const auto fused = [](const sim::ReplayResult& r) { return count(r, Verdict::kFused); };
+  totals.nis_mean = mean(jobs, std::mem_fn(&sim::ReplayResult::nis_mean), fused);
+  totals.nis_dof_mean = mean(jobs, std::mem_fn(&sim::ReplayResult::nis_dof_mean), fused);
   totals.rms = pooled_rms(jobs);
   return totals;
 }
@@ -217,25 +215,19 @@ void print_tables(const FuseOptions& options, const std::string& imu_name,
   }
   const std::vector<sim::OutageResult> outages = totals_of(jobs).outages;
   if (!outages.empty()) print_outage_summary(outages);
-  if (!outages.empty() && (outages.size() <= kListed || options.output.verbose)) {
+  if (!outages.empty() && (outages.size() <= kListed || options.verbose)) {
     print_outages(jobs);
   }
   fmt::print("\nIMU model: {}", imu_name);
-  if (!options.output.solution.empty()) {
-    fmt::print("; solution: {}", options.output.solution.string());
-  }
+  const std::filesystem::path& solution = options.logs.files.solution;
+  if (!solution.empty()) fmt::print("; solution: {}", solution.string());
   fmt::print("\n");
 }
 
 void warn(const FuseJob& job) {
   const sim::ReplayResult& r = job.result;
   const std::string where = job.drive.empty() ? "" : job.drive + ": ";
-  warn_of_log("IMU", job.input.imu, r.imu_summary);
-  warn_of_log("GNSS", job.input.gnss, r.gnss_summary);
-  for (std::size_t a = 0; a < kAidings.size(); ++a) {
-    warn_of_log(kAidings[a].name, job.input.aidings[a], r.aiding_summaries[a]);
-  }
-  if (!job.input.truth.empty()) warn_of_log("truth", job.input.truth, r.truth_summary);
+  for (const FuseLog& log : logs_of(job)) warn_of(log);
   if (const auto n = count(r, Verdict::kGap); n > 0) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);
   }

@@ -2,12 +2,24 @@
 /// What `leeway fuse` says about its runs: as tables, as JSON, and as warnings.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "sim/cli/commands/fuse_jobs.hpp"
 
 namespace leeway::cli {
+
+/// A log that a run has read.
+struct FuseLog {
+  std::string key{};
+  std::string title{};
+  std::string format{};
+  const std::filesystem::path& path;
+  const LogSummary& summary;
+};
+
+std::vector<FuseLog> logs_of(const FuseJob& job);
+
+/// How an outage, and outages of one length, are shown.
+Row row_of(const FuseJob& job, const sim::OutageResult& outage);
+Row row_of(const sim::OutageSummary& summary);
 
 /// All runs together. Means are weighted by their counts.
 struct FuseTotals {

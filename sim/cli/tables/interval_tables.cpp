@@ -1,20 +1,11 @@
 #include "sim/cli/tables/interval_tables.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
-#include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "leeway/sim/sensors/bias_model.hpp"
-#include "sim/cli/answer.hpp"
-#include "sim/cli/output.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
 namespace {
-
-using Outcome = sim::Interval::Outcome;
 
 /// Three significant digits, in seconds.
 std::string seconds(double s) {
@@ -23,15 +14,9 @@ std::string seconds(double s) {
 }
 
 std::string calibrated(const sim::Interval& answer) {
-  switch (answer.outcome) {
-    case Outcome::kNever:
-      return "none";
-    case Outcome::kAlways:
-      return "> " + seconds(answer.interval_s);
-    case Outcome::kSolved:
-      break;
-  }
-  return seconds(answer.interval_s);
+  if (answer.outcome == sim::Interval::Outcome::kNever) return "none";
+  const bool is_longer = answer.outcome == sim::Interval::Outcome::kAlways;
+  return (is_longer ? "> " : "") + seconds(answer.interval_s);
 }
 
 std::string free_inertial(const sim::Interval& answer, double duration_s) {
@@ -108,7 +93,7 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
   fmt::print("\nThe filter claims up to x{:.2f} the error that it makes.\n", pessimism);
 }
 
-std::string verdict(const Confirmation& c) {
+std::string verdict(const sim::Confirmation& c) {
   if (c.consistent) return "consistent";
   const std::string by_monte_carlo =
       c.interval_s ? seconds(*c.interval_s) + " s" : std::string("no interval found");
@@ -123,7 +108,7 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
   for (const SolvedImu& imu : solved) {
     for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
       if (!imu.confirmations[i]) continue;
-      const Confirmation& c = *imu.confirmations[i];
+      const sim::Confirmation& c = *imu.confirmations[i];
       const sim::CampaignResult& r = c.campaign;
       table.add({imu.scene.imu_name, fmt::format("{:g}", imu.intervals[i].limit_m),
                  seconds(imu.intervals[i].interval_s), std::to_string(r.trials),
@@ -157,17 +142,15 @@ void print_how(const std::vector<SolvedImu>& solved) {
 }
 
 /// "tactical/mid" is a class and where in its range; anything else is a name alone.
-Json imu_json(const sim::Scene& scene) {
-  const std::size_t slash = scene.imu_name.rfind('/');
-  const std::string range =
-      slash == std::string::npos ? std::string() : scene.imu_name.substr(slash + 1);
-  if (range != "low" && range != "mid" && range != "high") {
-    return {{"imu", scene.imu_name}, {"range", nullptr}};
+Json imu_json(const std::string& imu) {
+  const std::size_t slash = imu.rfind('/');
+  if (slash == imu.npos || !from_name<RangeEnd>(imu.substr(slash + 1))) {
+    return {{"imu", imu}, {"range", nullptr}};
   }
-  return {{"imu", scene.imu_name.substr(0, slash)}, {"range", range}};
+  return {{"imu", imu.substr(0, slash)}, {"range", imu.substr(slash + 1)}};
 }
 
-Json confirm_json(const Confirmation& c) {
+Json confirm_json(const sim::Confirmation& c) {
   const sim::CampaignResult& r = c.campaign;
   return {{"trials", r.trials},
           {"rms_over_sigma", r.rms_over_sigma},
@@ -202,7 +185,7 @@ Json interval_json(const std::vector<SolvedImu>& solved) {
     for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
       const sim::Interval& a = imu.intervals[i];
       const bool asked = !imu.confirmations.empty() && imu.confirmations[i];
-      Json row = imu_json(imu.scene);
+      Json row = imu_json(imu.scene.imu_name);
       row["motion"] = imu.scene.trajectory.name;
       row["bias_model"] = name(sim::bias_model_of(imu.scene.imu));
       row["metric"] = name(imu.scene.limit.metric);

@@ -2,12 +2,17 @@
 /// What `leeway interval` says.
 #pragma once
 
-#include <vector>
-
-#include "sim/cli/commands/interval_confirm.hpp"
 #include "sim/cli/json.hpp"
+#include "sim/trials/confirmation.hpp"
 
 namespace leeway::cli {
+
+struct SolvedImu {
+  sim::Scene scene{};
+  std::vector<sim::Interval> intervals{};
+  /// As intervals; empty: not asked for.
+  std::vector<std::optional<sim::Confirmation>> confirmations{};
+};
 
 void print_interval_tables(const std::vector<SolvedImu>& solved);
 

@@ -10,7 +10,7 @@
 
 namespace leeway::sim {
 
-/// A GNSS outage: fixes with start < t <= start + duration are withheld.
+/// A GNSS outage: fixes with start < t <= start + duration are withheld, in s of the log or scene.
 struct Outage {
   double start_s{};
   double duration_s{};
@@ -20,12 +20,14 @@ struct Outage {
   }
 };
 
-/// [{"start_s": .., "duration_s": ..}, ..] @throws Error naming file, entry and what is wrong.
+/// Outages of a JSON file, [{"start_s": .., "duration_s": ..}, ..], in s.
+/// @throws Error naming file, entry and what is wrong.
 std::vector<Outage> read_outages(const std::filesystem::path& path);
 
 /// What the error at the end of an outage was measured against.
 enum class Against { kNothing, kReference, kGnss };
 
+/// What an outage cost.
 struct OutageResult {
   Outage outage{};
   Against against{Against::kNothing};  ///< kNothing: no solution, or nothing to compare with
@@ -47,7 +49,7 @@ struct OutageSummary {
   double rms_over_sigma_h{};  ///< RMS of error / sigma per horizontal axis pair: 1 when honest
 };
 
-/// By duration, shortest first.
+/// Summaries by duration, shortest first.
 std::vector<OutageSummary> summarize(const std::vector<OutageResult>& outages);
 
 }  // namespace leeway::sim

@@ -2,15 +2,11 @@
 /// A GNSS receiver in a scene: its error model, and now and then an outlier.
 #pragma once
 
-#include <cstdint>
-
 #include "leeway/sim/scene/scene.hpp"
-#include "leeway/sim/sensors/gnss_simulator.hpp"
-#include "leeway/sim/tools/random.hpp"
 
 namespace leeway::sim {
 
-/// Fixes at any times that ascend; outages and latency are the caller's.
+/// A receiver, asked at ascending times. Outages and latency are the caller's.
 class Receiver {
  public:
   /// @throws Error when the error model is not valid or the trajectory has no motion.
@@ -20,7 +16,8 @@ class Receiver {
         outlier_probability_(gnss.outlier_probability),
         outlier_sigma_m_(gnss.outlier_sigma_m) {}
 
-  /// The covariance reported does not know of the outlier. @throws Error as GnssSimulator does.
+  /// A fix at a time in s; the covariance reported does not know of an outlier.
+  /// @throws Error as GnssSimulator does.
   GnssFix fix_at(double t_s) {
     GnssFix fix = simulator_.fix_at(t_s);
     if (outlier_probability_ > 0.0 && outliers_.uniform() < outlier_probability_) {

@@ -3,16 +3,9 @@
 /// receiver really do, what the filter believes, and the error that is allowed.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "leeway/earth/fields.hpp"
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/model/initial_covariance.hpp"
-#include "leeway/sim/motion/trajectory.hpp"
 #include "leeway/sim/scene/outage.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"
 
@@ -47,6 +40,7 @@ struct ErrorLimit {
   }
 };
 
+/// A scene. Times in s from its start.
 struct Scene {
   std::string name{};
   Trajectory trajectory{};
@@ -74,10 +68,10 @@ struct Scene {
   }
 };
 
-/// @throws Error naming the field, its value and the allowed range.
+/// A check of every number. @throws Error naming the field, its value and the allowed range.
 void validate(const Scene& scene);
 
-/// Gives the scene another IMU: the truth, the filter's belief in it, and the name.
+/// A change of the IMU: the truth, the filter's belief in it, and the name.
 void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model);
 
 /// The start errors that the scene states, or those of a start by levelling (tilt: accelerometer
@@ -85,11 +79,11 @@ void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model);
 /// 1e-5 rad and 10 deg), at the GNSS's own sigmas of velocity and horizontal position.
 InitialSigma initial_sigma(const Scene& scene);
 
-/// The last part of the scene, whose fixes count: limit.last_s, two fix intervals or a period of
-/// the trajectory, whichever is longest.
+/// Length in s of the last part of the scene, whose fixes count: limit.last_s, two fix intervals or
+/// a period of the trajectory, whichever is longest.
 double scored_part_s(const Scene& scene);
 
-/// Times of the fixes that are not in an outage, in (0, duration].
+/// Times in s of the fixes that are not in an outage, ascending, in (0, duration].
 std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s);
 
 }  // namespace leeway::sim

@@ -2,20 +2,14 @@
 /// Scenes as TOML files: docs/guide/scenes.md has the sections, keys, units, ranges and defaults.
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::sim {
 
 inline constexpr std::size_t kLongestSceneFile = 1 << 20;  ///< bytes
 
-/// Reads a scene, valid as validate(Scene) means it. Files that it names are taken relative to its
-/// folder.
+/// A scene from a file, valid as validate(Scene) means it. Files that it names are taken relative
+/// to its folder.
 /// @param duration_s  in place of the file's: trajectories that have no end go on to it, and
 /// outages beyond it are left out
 /// @param notes  unless null, gets a line for each old name that the file uses

@@ -13,6 +13,7 @@ namespace leeway::sim {
 /// Source: Kulisch and Miranker, The Arithmetic of the Digital Computer: A New Approach (1986).
 class ExactSum {
  public:
+  /// The sum with one term more, or with all terms of another sum.
   void add(double term);
   void add(const ExactSum& other);
 

@@ -1,19 +1,19 @@
 /// @file
-/// The nonlinear check of solved intervals: does the filter, run for real, err as the linear
+/// The nonlinear check of a solved interval: does the filter, run for real, err as the linear
 /// analysis says?
 #pragma once
 
+#include <functional>
 #include <optional>
-#include <vector>
 
 #include "leeway/sim/analysis/interval.hpp"
 #include "leeway/sim/trials/campaign.hpp"
 
-namespace leeway::cli {
+namespace leeway::sim {
 
 /// What the Monte Carlo found at a solved interval.
 struct Confirmation {
-  sim::CampaignResult campaign{};
+  CampaignResult campaign{};
   double rms_over_true{};  ///< to the linear analysis, which knows the unmodelled errors
   /// The filter errs as much as it claims and as the linear analysis says: NEES and the squared RMS
   /// within the band that an honest filter leaves once in a thousand times, and no trial diverged.
@@ -22,14 +22,10 @@ struct Confirmation {
   std::optional<double> interval_s{};
 };
 
-struct SolvedImu {
-  sim::Scene scene{};
-  std::vector<sim::Interval> intervals{};
-  std::vector<std::optional<Confirmation>> confirmations{};  ///< as intervals; empty: not asked for
-};
+/// The check by the scene's trials, and the search for a better interval where it fails.
+/// @param track     error_track() of the scene
+/// @param progress  called with the fraction done, of each campaign anew
+Confirmation confirm(const Scene& scene, const ErrorTrack& track, const Interval& answer,
+                     const std::function<void(double fraction)>& progress);
 
-/// Fills in the confirmations, showing progress.
-/// @param limits_m  of which answers; empty: of all
-void confirm(std::vector<SolvedImu>& solved, int trials, const std::vector<double>& limits_m);
-
-}  // namespace leeway::cli
+}  // namespace leeway::sim

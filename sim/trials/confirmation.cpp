@@ -1,15 +1,11 @@
-#include "sim/cli/commands/interval_confirm.hpp"
-
-#include <spdlog/fmt/fmt.h>
+#include "sim/trials/confirmation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "leeway/model/chi_square.hpp"
-#include "leeway/sim/analysis/covariance_analysis.hpp"
-#include "sim/cli/output.hpp"
 
-namespace leeway::cli {
+namespace leeway::sim {
 namespace {
 
 constexpr double kRareProbability = 1e-3;  // of an honest filter found inconsistent
@@ -26,8 +22,8 @@ bool within_band(double mean, int dof_each, std::int64_t trials) {
 
 /// A campaign at one interval, beside the linear analysis of the same fixes.
 struct Run {
-  sim::CampaignResult campaign{};
-  sim::CovarianceAnalysis linear{};
+  CampaignResult campaign{};
+  CovarianceAnalysis linear{};
 
   double rms_over_true() const { return campaign.rms_horizontal_m / linear.true_drms_m; }
   /// By the scene's metric, at the worst fix.
@@ -36,12 +32,10 @@ struct Run {
 
 class Confirmer {
  public:
-  Confirmer(const sim::Scene& scene, const sim::ErrorTrack& track, int trials, Progress& progress)
-      : scene_(scene), track_(track), progress_(progress) {
-    scene_.trials = trials;
-  }
+  Confirmer(const Scene& scene, const ErrorTrack& track, std::function<void(double)> progress)
+      : scene_(scene), track_(track), progress_(std::move(progress)) {}
 
-  Confirmation confirm(const sim::Interval& answer) {
+  Confirmation confirm(const Interval& answer) {
     const Run first = run(answer.interval_s);
     Confirmation c;
     c.campaign = first.campaign;
@@ -57,17 +51,17 @@ class Confirmer {
   Run run(double interval_s) {
     scene_.gnss.interval_s = interval_s;
     Run r;
-    r.linear = sim::analyze(scene_, track_);
-    sim::CampaignOptions options;
+    r.linear = analyze(scene_, track_);
+    CampaignOptions options;
     options.score_last_s = r.linear.window_s;
-    options.progress = [this](const sim::CampaignProgress& p) { progress_.show(p.fraction); };
-    r.campaign = sim::campaign(scene_, options);
+    options.progress = [this](const CampaignProgress& p) { progress_(p.fraction); };
+    r.campaign = campaign(scene_, options);
     return r;
   }
 
   /// Secants in log(error) over log(interval) between an interval that keeps the limit and one that
   /// does not. @returns the longest found that keeps it in the trials; nothing without one.
-  std::optional<double> search(const sim::Interval& answer, Run here) {
+  std::optional<double> search(const Interval& answer, Run here) {
     std::optional<double> kept;  // logarithms of intervals, s
     std::optional<double> lost;
     double log_s = std::log(answer.interval_s);
@@ -90,28 +84,16 @@ class Confirmer {
     return std::exp(*kept);
   }
 
-  sim::Scene scene_;
-  const sim::ErrorTrack& track_;
-  Progress& progress_;
+  Scene scene_;
+  const ErrorTrack& track_;
+  std::function<void(double)> progress_;
 };
 
 }  // namespace
 
-void confirm(std::vector<SolvedImu>& solved, int trials, const std::vector<double>& limits_m) {
-  const auto is_asked = [&limits_m](double limit_m) {
-    return limits_m.empty() ||
-           std::find(limits_m.begin(), limits_m.end(), limit_m) != limits_m.end();
-  };
-  for (SolvedImu& imu : solved) {
-    const sim::ErrorTrack track = sim::error_track(imu.scene);
-    for (const sim::Interval& answer : imu.intervals) {
-      imu.confirmations.emplace_back();
-      if (std::isnan(answer.interval_s) || !is_asked(answer.limit_m)) continue;
-      Progress progress(
-          fmt::format("confirm {} at {:.1f} s", imu.scene.imu_name, answer.interval_s));
-      imu.confirmations.back() = Confirmer(imu.scene, track, trials, progress).confirm(answer);
-    }
-  }
+Confirmation confirm(const Scene& scene, const ErrorTrack& track, const Interval& answer,
+                     const std::function<void(double fraction)>& progress) {
+  return Confirmer(scene, track, progress).confirm(answer);
 }
 
-}  // namespace leeway::cli
+}  // namespace leeway::sim
