@@ -118,8 +118,8 @@ TEST_CASE("legs end at steps and at the time asked for") {
 TEST_CASE("a step out of range is refused") {
   ErrorTrackConfig config;
   config.step_s = 0.0;
-  CHECK_THROWS_WITH_AS(ErrorTrack(straight(), 10.0, config), doctest::Contains("0.01 to 100 s"),
-                       Error);
+  CHECK_THROWS_WITH_AS(ErrorTrack(straight(), 10.0, config),
+                       doctest::Contains("must be 0.01 to 100"), Error);
 }
 
 }  // namespace leeway::sim
