@@ -91,7 +91,7 @@ awk -v headers="$headers" '
     for (u = 1; u <= uses; ++u) {
       split(used[u], part, SUBSEP)
       if (has(part[1], provider[part[2]], u)) continue
-      print part[1] ":" first[used[u]] ": uses what is in <" header[part[2]] ">, without its include"
+      print part[1] ":" first[used[u]] ": uses what is in <" header[part[2]] "> without it"
       bad = 1
     }
     exit bad
