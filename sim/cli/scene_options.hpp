@@ -2,7 +2,7 @@
 /// Which scene a command is about: a file, and what the command line changes in it.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
