@@ -2,7 +2,8 @@
 /// What a command found, in the three forms in which it is shown: tables, a JSON object, a page.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
+#include <filesystem>
 #include <functional>
 
 #include "sim/cli/json.hpp"

@@ -2,6 +2,10 @@
 /// The commands of the program. A file in commands/ that defines a Command is all that one takes.
 #pragma once
 
+// The whole of <CLI/CLI.hpp> is in command.cpp alone: it compiles the help and the configuration
+// files of CLI11 into each source that includes it.
+#include <CLI/App.hpp>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -21,10 +25,12 @@ enum ExitCode : int {
 using AddCommand = std::function<void(CLI::App& program, int& exit_code)>;
 
 /// Every command by its name.
-inline std::map<std::string, AddCommand>& commands() {
-  static std::map<std::string, AddCommand> all;
-  return all;
-}
+std::map<std::string, AddCommand>& commands();
+
+/// Puts a command among commands().
+/// @param prepare  adds the options to the command and gives what runs it
+void define_command(const char* name, const char* about, const char* footer,
+                    std::function<std::function<int()>(CLI::App&)> prepare);
 
 /// A command, defined once at namespace scope: that puts it among commands().
 /// @tparam Options  the type of what run() takes
@@ -36,13 +42,11 @@ struct Command {
   /// @param run          gives the exit code, or throws
   Command(const char* name, const char* about, const char* footer,
           void (*add_options)(CLI::App&, Options&), int (*run)(const Options&)) {
-    commands()[name] = [=](CLI::App& program, int& exit_code) {
-      CLI::App* app = program.add_subcommand(name, about);
+    define_command(name, about, footer, [=](CLI::App& app) {
       const auto options = std::make_shared<Options>();
-      add_options(*app, *options);
-      app->footer(footer);
-      app->callback([run, options, &exit_code] { exit_code = run(*options); });
-    };
+      add_options(app, *options);
+      return [run, options] { return run(*options); };
+    });
   }
 };
 

@@ -18,8 +18,6 @@ inline Json json_of(const std::optional<Eigen::Vector3d>& v) {
 }
 
 /// Numbers that are not finite become null; what is not UTF-8, as paths may be, is replaced.
-inline std::string text_of(const Json& json, int indent = -1) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
+std::string text_of(const Json& json, int indent = -1);
 
 }  // namespace leeway::cli
