@@ -17,14 +17,21 @@ constexpr double kBridgeTiltRad = 0.1;     // roads lean; they do not turn vehic
 constexpr double kBridgeAccelerationMps2 = 3.0;
 
 /// Adds what a vehicle may have done over a time in which nobody looked.
-void add_unseen_motion(ErrorMatrix& P, const Eigen::Vector3d& r_e_m, double dt_s) {
+void add_unseen_motion(ErrorMatrix& P, const NavState& nav, double dt_s, bool course_turns_along) {
   const double turn_rad = std::min(kBridgeTurnRadps * dt_s, kBridgeMaxTurnRad);
   const double tilt_rad = std::min(turn_rad, kBridgeTiltRad);
   const double velocity_mps = kBridgeAccelerationMps2 * dt_s;
   const double position_m = 0.5 * velocity_mps * dt_s;
-  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
-  const Eigen::Vector3d psi_n(tilt_rad, tilt_rad, turn_rad);
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(nav.r_e_m));
+  const Eigen::Vector3d psi_n(tilt_rad, tilt_rad, 0.0);
   P.block<3, 3>(kPsi, kPsi) += C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
+  ErrorVector turn = ErrorVector::Zero();
+  turn.segment<3>(kPsi) = turn_rad * C_en.col(2);
+  if (course_turns_along) {
+    turn.segment<3>(kDv) = turn.segment<3>(kPsi).cross(nav.v_e_mps);
+    turn.segment<3>(kDr) = 0.5 * dt_s * turn.segment<3>(kDv);
+  }
+  P += turn * turn.transpose();
   P.diagonal().segment<3>(kDv).array() += velocity_mps * velocity_mps;
   P.diagonal().segment<3>(kDr).array() += position_m * position_m;
   P.block<3, 3>(kDv, kDr).diagonal().array() += velocity_mps * position_m;
@@ -64,7 +71,7 @@ void make_positive_definite(ErrorMatrix& P) {
   P = (0.5 * (P + P.transpose())).eval();
 }
 
-void bridge(Belief& belief, Time to, const ProcessNoise& noise) {
+void bridge(Belief& belief, Time to, const ProcessNoise& noise, bool course_turns_along) {
   NavState& nav = belief.estimate.nav;
   const double dt_s = to_seconds(to - nav.time);
   nav.r_e_m += dt_s * nav.v_e_mps;
@@ -74,7 +81,7 @@ void bridge(Belief& belief, Time to, const ProcessNoise& noise) {
   Phi.r.middleCols<3>(kDv) = dt_s * Eigen::Matrix3d::Identity();
   propagate(belief.P, Phi, noise);
   if (belief.vehicle) propagate(*belief.vehicle, Phi);
-  add_unseen_motion(belief.P, nav.r_e_m, dt_s);
+  add_unseen_motion(belief.P, nav, dt_s, course_turns_along);
 }
 
 bool is_sane(const Estimate& estimate, const ErrorMatrix& P) {

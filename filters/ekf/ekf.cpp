@@ -9,8 +9,10 @@ namespace leeway {
 
 template class BasicEkf<SymmetricKernel<double>>;
 
-void bridge(Ekf& filter, Time to) {
-  edit(filter, [&](Belief& belief) { bridge(belief, to, filter.inertial().noise()); });
+void bridge(Ekf& filter, Time to, bool course_turns_along) {
+  edit(filter, [&](Belief& belief) {
+    bridge(belief, to, filter.inertial().noise(), course_turns_along);
+  });
 }
 
 double heading_sigma_rad(const Ekf& filter) {

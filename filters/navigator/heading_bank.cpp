@@ -164,6 +164,34 @@ void HeadingBank::merge() {
   normalize();
 }
 
+void HeadingBank::challenge(const Ekf& rival, double odds) {
+  if (count_ >= kMaxRivals) drop(lightest());
+  std::size_t free = 0;
+  while (members_[free]) ++free;
+  members_[free].emplace(rival);
+  log_weight_[free] = log_weight_[best_] + std::log(odds);
+  ++count_;
+  normalize();
+}
+
+const Ekf& HeadingBank::most_doubting() const {
+  const Ekf* most = &best();
+  for (const std::optional<Ekf>& member : members_) {
+    if (member && member->inertial().noise_scale() > most->inertial().noise_scale()) {
+      most = &*member;
+    }
+  }
+  return *most;
+}
+
+std::size_t HeadingBank::lightest() const {
+  std::size_t lightest = best_;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (members_[k] && log_weight_[k] < log_weight_[lightest]) lightest = k;
+  }
+  return lightest;
+}
+
 void HeadingBank::drop(std::size_t k) {
   members_[k].reset();
   --count_;

@@ -21,7 +21,8 @@ ErrorMatrix without_biases(ErrorMatrix P) {
 }  // namespace
 
 SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
-    : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
+    : imu_(scene.filter.imu),
+      noise_(process_noise(scene.filter.imu, scene.filter.biases)),
       P_(initial_covariance(start_of(scene), initial_sigma(scene), scene.filter.imu,
                             scene.filter.biases)),
       truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
@@ -32,7 +33,7 @@ SceneCovariance::SceneCovariance(const Scene& scene, bool by_source)
 }
 
 void SceneCovariance::propagate(const Leg& leg) {
-  leeway::propagate(P_, leg.Phi, noise_);
+  leeway::propagate(P_, leg.Phi, with_motion(noise_, imu_, leg.motion));
   if (truth_) truth_->propagate(leg);
 }
 

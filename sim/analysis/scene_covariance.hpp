@@ -27,6 +27,7 @@ class SceneCovariance {
   ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
 
  private:
+  ImuErrorModel imu_;
   ProcessNoise noise_;
   ErrorMatrix P_;
   std::optional<TruthModel<1>> truth_;  // none: the filter knows all there is, P is the truth

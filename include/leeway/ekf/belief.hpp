@@ -34,8 +34,10 @@ void make_positive_definite(ErrorMatrix& P);
 /// Carries the belief over a time without IMU data: constant velocity relative to the Earth,
 /// attitude held in the Earth-fixed frame. Its uncertainty grows as that of a vehicle that may turn
 /// at 0.5 rad/s, up to 1 rad, lean by as much up to 0.1 rad, and accelerate at 3 m/s^2 (1 sigma).
+/// @param course_turns_along  whether the velocity turns with the vehicle: then the unseen turn is
+/// one error of heading, course and place, which no constraint between them can tell
 /// @pre to > belief.estimate.nav.time.
-void bridge(Belief& belief, Time to, const ProcessNoise& noise);
+void bridge(Belief& belief, Time to, const ProcessNoise& noise, bool course_turns_along = false);
 
 /// Whether estimate and covariance are numbers of a size that arithmetic can bear.
 bool is_sane(const Estimate& estimate, const ErrorMatrix& P);

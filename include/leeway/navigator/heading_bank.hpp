@@ -21,6 +21,7 @@ namespace leeway {
 class HeadingBank {
  public:
   static constexpr std::size_t kMaxFilters = 12;
+  static constexpr std::size_t kMaxRivals = 3;  ///< more at a time cost more than they tell
   /// Up to this spread one filter is enough.
   static constexpr double kOneFilterRad = 15.0 * kRadPerDeg;
   /// From this spread on the heading is anywhere on the circle.
@@ -63,12 +64,20 @@ class HeadingBank {
     return outcomes[best_];
   }
 
+  /// Sets another filter beside the others, of which the lightest goes when there are too many:
+  /// later measurements tell which is right, and until then covariance() spans them.
+  /// @param odds  of it to best(), > 0
+  void challenge(const Ekf& rival, double odds);
+
   bool collapsed() const { return count_ == 1; }
   std::size_t count() const { return count_; }
 
   /// The heaviest member.
   const Ekf& best() const { return *members_[best_]; }
   Ekf& best() { return *members_[best_]; }
+
+  /// The one that takes its IMU for the noisiest.
+  const Ekf& most_doubting() const;
 
   /// Probability of best(), 0 to 1.
   double best_weight() const;
@@ -90,6 +99,7 @@ class HeadingBank {
 
   void weigh(const Outcomes& outcomes);
   double evidence_weight(const UpdateOutcome& outcome);
+  std::size_t lightest() const;
   void normalize();
   void merge();
   void drop(std::size_t k);

@@ -75,6 +75,10 @@ class StandstillDetector {
   /// @returns whether the vehicle has stood still over this block and the one before.
   bool push(const ImuBlock& block, const Ekf& filter);
 
+  /// Whether the horizontal acceleration over a block is no larger than its own error may be, which
+  /// is that of tilt and accelerometer bias together: motion that tells nothing of the heading.
+  bool is_even(const ImuBlock& block, const Ekf& filter) const;
+
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {

@@ -39,7 +39,7 @@ struct FuseOutput {
 
 /// Aiding by what is known of the vehicle.
 struct FuseVehicle {
-  std::string name{"none"};
+  VehicleKind kind{VehicleKind::kNone};
   std::vector<std::string> without{};
   bool estimate_mount{false};
 };

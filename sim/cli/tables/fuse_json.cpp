@@ -21,6 +21,7 @@ Json summary_json(const std::filesystem::path& path, const std::string& format,
           {"format", format},
           {"lines", summary.lines},
           {"records", summary.records},
+          {"carried_over", summary.carried_over},
           {"damaged_lines", summary.damaged_lines()},
           {"damaged", damaged},
           {"messages", summary.messages},
@@ -153,7 +154,7 @@ Json input_json(const FuseOptions& o, const std::string& imu_name) {
     for (const auto& folder : o.logs.drives) input["drives"].push_back(folder.string());
   }
   const Eigen::Vector2d scale = o.logs.gnss_sigma_scale.value_or(Eigen::Vector2d::Ones());
-  input.update({{"vehicle", o.vehicle.name},
+  input.update({{"vehicle", name(o.vehicle.kind)},
                 {"without", o.vehicle.without},
                 {"estimate_mount", o.vehicle.estimate_mount},
                 {"position_lag_s", o.timing.position_lag_s},
