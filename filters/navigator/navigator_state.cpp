@@ -11,6 +11,7 @@
 namespace leeway {
 namespace {
 
+constexpr double kBrokenImuScale = 10.0;  // beyond, the IMU cannot be what it is said to be
 constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
 
 EkfConfig filter_of(const NavigatorConfig& config) {
@@ -126,7 +127,9 @@ void NavigatorState::open_heading() {
                          filter.estimate().nav.r_e_m.norm() > kLowestM;
   if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
   std::optional<VehicleState> vehicle = filter.vehicle();
+  const double noise_scale = filter.inertial().noise_scale();
   bank_ = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
+  bank_->for_each([noise_scale](Ekf& member) { member.scale_imu_noise(noise_scale); });
   if (!vehicle) return;
   vehicle->cross.setZero();
   bank_->for_each(
@@ -236,7 +239,8 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   const bool is_gated = last_update_.outcome == Outcome::kGated;
   // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
   // distance is not one that the estimate has drifted.
-  if (bank_->collapsed() && (!is_gated || gate_recovery_.is_row())) learn_noise(fix);
+  const bool differ_in_heading = bank_->count() > HeadingBank::kMaxRivals;
+  if (!differ_in_heading && (!is_gated || gate_recovery_.is_row())) learn_noise(fix);
   if (is_gated) {
     const double odds = gate_recovery_.odds_of(fix);
     if (odds > 0.0 && !is_explained) challenge(fix, odds);
@@ -295,10 +299,13 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   const auto rival = [&](const Ekf& filter) {
     return rival_of(filter, fix, last_update_, unseen_mps);
   };
-  if (bank_->count() > HeadingBank::kMaxRivals) {
+  if (bank_->count() <= HeadingBank::kMaxRivals) {
+    // The more its IMU is doubted already, the likelier the filter is what is wrong.
+    const Ekf& doubting = bank_->most_doubting();
+    const double scale = doubting.inertial().noise_scale();
+    bank_->challenge(rival(doubting), scale * scale * odds);
+  } else if (gate_recovery_.is_repeated()) {
     bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
-  } else {
-    bank_->challenge(rival(bank_->most_doubting()), odds);
   }
 }
 
@@ -342,7 +349,7 @@ Health NavigatorState::health(Time now) const {
       std::sqrt(std::max({1.0, health.position_nis_ratio, health.velocity_nis_ratio}));
   using State = Health::State;
   health.imu_sigma_scale = bank_->best().inertial().noise_scale();
-  const bool is_inconsistent = position_noise_.is_inconsistent() ||
+  const bool is_inconsistent = health.imu_sigma_scale > kBrokenImuScale || position_noise_.is_inconsistent() ||
                                velocity_noise_.is_inconsistent();
   health.state = gate_recovery_.is_row()          ? State::kGating
                  : health.coasting_s > kCoastingS ? State::kCoasting

@@ -36,6 +36,9 @@ class GateRecovery {
   /// Whether the newest fix was refused.
   bool is_row() const { return refused_since_.has_value(); }
 
+  /// Whether the newest refused fix agrees with one refused before it.
+  bool is_repeated() const { return rival_ && rival_->time > *rival_since_; }
+
   /// The first of the fixes refused in a row.
   const std::optional<Time>& since() const { return refused_since_; }
 
