@@ -71,7 +71,7 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
     // Three sigmas to either side, or the circle.
     const double range_rad = std::min(6.0 * sigma_rad, 2.0 * kPi);
     count_ = static_cast<std::size_t>(
-        std::min(std::ceil(range_rad / kSpacingRad), static_cast<double>(kMaxFilters)));
+        std::min(std::ceil(range_rad / kSpacingRad), static_cast<double>(kMaxHeadings)));
     spacing_rad = range_rad / static_cast<double>(count_);
     member_sigma_rad = 0.5 * spacing_rad;
   }
@@ -164,8 +164,8 @@ void HeadingBank::merge() {
   normalize();
 }
 
-void HeadingBank::challenge(const Ekf& rival, double odds) {
-  if (count_ >= kMaxRivals) drop(lightest());
+void HeadingBank::challenge(const Ekf& rival, double odds, std::size_t max_count) {
+  if (count_ >= max_count) drop(lightest_but_best());
   std::size_t free = 0;
   while (members_[free]) ++free;
   members_[free].emplace(rival);
@@ -184,10 +184,12 @@ const Ekf& HeadingBank::most_doubting() const {
   return *most;
 }
 
-std::size_t HeadingBank::lightest() const {
-  std::size_t lightest = best_;
+/// @pre there are two.
+std::size_t HeadingBank::lightest_but_best() const {
+  std::size_t lightest = kMaxFilters;
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
-    if (members_[k] && log_weight_[k] < log_weight_[lightest]) lightest = k;
+    if (!members_[k] || k == best_) continue;
+    if (lightest == kMaxFilters || log_weight_[k] < log_weight_[lightest]) lightest = k;
   }
   return lightest;
 }

@@ -11,7 +11,7 @@
 namespace leeway {
 namespace {
 
-constexpr double kBrokenImuScale = 10.0;  // beyond, the IMU cannot be what it is said to be
+constexpr double kBrokenImuScale = 30.0;  // beyond, the IMU cannot be what it is said to be
 constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
 
 EkfConfig filter_of(const NavigatorConfig& config) {
@@ -51,6 +51,28 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
 bool has_white_error(const GnssFix& fix) {
   constexpr double kFixedM = 0.05;  // a quarter of the carrier's wavelength
   return fix.position && fix.position->R_e_m2.trace() < 3.0 * kFixedM * kFixedM;
+}
+
+/// Whether a new filter would start from this. What it would refuse goes on in the old one: push
+/// does not throw.
+bool can_start(const Estimate& estimate, const ErrorMatrix& P) {
+  constexpr double kLowestM = 6.35e6;  // from the Earth's centre
+  return is_sane(estimate, P) && P.diagonal().minCoeff() > 0.0 &&
+         estimate.nav.r_e_m.norm() > kLowestM;
+}
+
+/// The filter several times, its heading as uncertain as told.
+std::optional<HeadingBank> bank_of_headings(const Ekf& filter, double sigma_rad) {
+  const ErrorMatrix P = filter.covariance();
+  if (!can_start(filter.estimate(), P)) return std::nullopt;
+  HeadingBank bank = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
+  std::optional<VehicleState> vehicle = filter.vehicle();
+  if (vehicle) vehicle->cross.setZero();
+  bank.for_each([&](Ekf& member) {
+    member.scale_imu_noise(filter.inertial().noise_scale());
+    if (vehicle) edit(member, [&](Belief& belief) { belief.vehicle = vehicle; });
+  });
+  return bank;
 }
 
 bool is_sane(HeadingBank& bank) {
@@ -118,22 +140,9 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
 
 void NavigatorState::open_heading() {
   if (!bank_->collapsed()) return;
-  const Ekf& filter = bank_->best();
-  const double sigma_rad = heading_sigma_rad(filter);
-  const ErrorMatrix P = filter.covariance();
-  // What a new filter would refuse to start from goes on in the old one: push does not throw.
-  constexpr double kLowestM = 6.35e6;  // from the Earth's centre
-  const bool can_start = is_sane(filter.estimate(), P) && P.diagonal().minCoeff() > 0.0 &&
-                         filter.estimate().nav.r_e_m.norm() > kLowestM;
-  if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
-  std::optional<VehicleState> vehicle = filter.vehicle();
-  const double noise_scale = filter.inertial().noise_scale();
-  bank_ = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
-  bank_->for_each([noise_scale](Ekf& member) { member.scale_imu_noise(noise_scale); });
-  if (!vehicle) return;
-  vehicle->cross.setZero();
-  bank_->for_each(
-      [&](Ekf& member) { edit(member, [&](Belief& belief) { belief.vehicle = vehicle; }); });
+  const double sigma_rad = heading_sigma_rad(bank_->best());
+  if (!(sigma_rad > HeadingBank::kOneFilterRad)) return;
+  if (const auto headings = bank_of_headings(bank_->best(), sigma_rad)) bank_ = *headings;
 }
 
 void NavigatorState::bridge(Time to) {
@@ -228,7 +237,7 @@ Verdict NavigatorState::use(const GnssFix& fix) {
 
 void NavigatorState::align(const GnssFix& fix) {
   const auto found = aligner_.push(fix);
-  if (!found) return;
+  if (!found || !can_start(found->estimate, found->P)) return;
   begin(HeadingBank(filter_of(config_), found->estimate, found->P, found->axis_e,
                     found->turn_sigma_rad));
 }
@@ -276,6 +285,8 @@ void NavigatorState::learn_noise(const GnssFix& fix) {
 void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   constexpr double kUpS = 30.0;
   constexpr double kDownS = 300.0;
+  constexpr double kBeyondChance = 1.5;  // 90 degrees of freedom stay below with 99.8 %
+  constexpr double kLargestRatio = 4.0;
   Ekf& filter = bank_->best();
   const double dt_s = std::clamp(to_seconds(fix.time - last_fused_.value_or(fix.time)), 0.0, kUpS);
   // A slow error of the receiver's positions would be taken for the IMU's.
@@ -284,10 +295,10 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
           ? position_noise_.nis_ratio()
           : 0.0;
   const double ratio = std::max(position_ratio, velocity_noise_.nis_ratio());
-  const double tau_s = ratio > 1.0 ? kUpS : kDownS;
-  const double scale =
-      filter.inertial().noise_scale() * std::pow(std::clamp(ratio, 0.1, 4.0), dt_s / tau_s);
-  filter.scale_imu_noise(std::clamp(scale, 1.0, kLargestImuScale));
+  double scale = filter.inertial().noise_scale();
+  if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kLargestRatio), dt_s / kUpS);
+  if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / kDownS);
+  filter.scale_imu_noise(std::min(scale, kLargestImuScale));
 }
 
 void NavigatorState::challenge(const GnssFix& fix, double odds) {
@@ -299,14 +310,30 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   const auto rival = [&](const Ekf& filter) {
     return rival_of(filter, fix, last_update_, unseen_mps);
   };
-  if (bank_->count() <= HeadingBank::kMaxRivals) {
-    // The more its IMU is doubted already, the likelier the filter is what is wrong.
-    const Ekf& doubting = bank_->most_doubting();
-    const double scale = doubting.inertial().noise_scale();
-    bank_->challenge(rival(doubting), scale * scale * odds);
-  } else if (gate_recovery_.is_repeated()) {
-    bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
+  if (bank_->count() > HeadingBank::kMaxRivals) {
+    if (gate_recovery_.is_repeated()) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
+    return;
   }
+  const Ekf& doubting = bank_->most_doubting();
+  const double scale = doubting.inertial().noise_scale();
+  // The more its IMU is doubted already, the likelier the filter is what is wrong.
+  if (gate_recovery_.is_repeated() && doubt_heading(rival(bank_->best()), rival(doubting))) return;
+  bank_->challenge(rival(doubting), scale * scale * odds);
+}
+
+// Fixes that agree with each other and with no filter: it is the heading, or the IMU.
+bool NavigatorState::doubt_heading(Ekf restarted, const Ekf& doubting) {
+  constexpr double kOnceInS = 60.0;
+  const Time now = restarted.estimate().nav.time;
+  if (heading_doubted_ && to_seconds(now - *heading_doubted_) < kOnceInS) return false;
+  restarted.scale_imu_noise(bank_->best().inertial().noise_scale());
+  auto headings = bank_of_headings(restarted, HeadingBank::kWholeCircleRad);
+  if (!headings) return false;
+  headings->challenge(doubting, 1.0, HeadingBank::kMaxFilters);
+  headings->challenge(bank_->best(), 1.0, HeadingBank::kMaxFilters);
+  bank_ = *headings;
+  heading_doubted_ = now;
+  return true;
 }
 
 void NavigatorState::realign() {

@@ -13,7 +13,7 @@
 namespace leeway {
 
 /// Factor on an IMU's noise beyond which it is no IMU of its kind.
-inline constexpr double kLargestImuScale = 30.0;
+inline constexpr double kLargestImuScale = 300.0;
 
 /// Decides which refused fixes may be true. It weighs them against what the vehicle can have done
 /// since the last good one, and against how long each side has been consistent: by times and

@@ -20,7 +20,8 @@ namespace leeway {
 /// Source: Alspach and Sorenson (1972); docs/theory/navigator/heading_bank.md.
 class HeadingBank {
  public:
-  static constexpr std::size_t kMaxFilters = 12;
+  static constexpr std::size_t kMaxHeadings = 12;
+  static constexpr std::size_t kMaxFilters = kMaxHeadings + 2;
   static constexpr std::size_t kMaxRivals = 3;  ///< more at a time cost more than they tell
   /// Up to this spread one filter is enough.
   static constexpr double kOneFilterRad = 15.0 * kRadPerDeg;
@@ -67,7 +68,7 @@ class HeadingBank {
   /// Sets another filter beside the others, of which the lightest goes when there are too many:
   /// later measurements tell which is right, and until then covariance() spans them.
   /// @param odds  of it to best(), > 0
-  void challenge(const Ekf& rival, double odds);
+  void challenge(const Ekf& rival, double odds, std::size_t max_count = kMaxRivals);
 
   bool collapsed() const { return count_ == 1; }
   std::size_t count() const { return count_; }
@@ -99,7 +100,7 @@ class HeadingBank {
 
   void weigh(const Outcomes& outcomes);
   double evidence_weight(const UpdateOutcome& outcome);
-  std::size_t lightest() const;
+  std::size_t lightest_but_best() const;
   void normalize();
   void merge();
   void drop(std::size_t k);

@@ -58,7 +58,7 @@ class NavigatorState {
   template <class Archive>
   void visit(Archive& archive) {
     archive(screen_, aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
-            last_fused_, gate_recovery_, repairs_, resets_, realignments_);
+            last_fused_, gate_recovery_, heading_doubted_, repairs_, resets_, realignments_);
     archive.optional(bank_, any_bank());
   }
 
@@ -76,6 +76,7 @@ class NavigatorState {
   Verdict settle(const GnssFix& fix, bool is_explained);
   void learn_noise(const GnssFix& fix);
   void challenge(const GnssFix& fix, double odds);
+  bool doubt_heading(Ekf restarted, const Ekf& doubting);
   void learn_imu_noise(const GnssFix& fix);
   bool moves() const;
   bool motion_hides_heading(Time t) const;
@@ -93,6 +94,7 @@ class NavigatorState {
   UpdateOutcome last_update_{};
   std::optional<Time> last_fused_{};  // fix
   GateRecovery gate_recovery_;
+  std::optional<Time> heading_doubted_{};
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};
   std::uint32_t realignments_{0};
