@@ -36,6 +36,7 @@ HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, Error
                         double sigma_rad) {
   const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
   transform_block(P, kPsi, Eigen::Matrix3d::Identity() - down_e * down_e.transpose());
+  P.diagonal().segment<3>(kPsi).array() += 1e-12;  // rad^2: more than what rounding takes away
   return HeadingBank(config, estimate, P, down_e, sigma_rad);
 }
 
@@ -56,8 +57,10 @@ bool has_white_error(const GnssFix& fix) {
 /// Whether a new filter would start from this. What it would refuse goes on in the old one: push
 /// does not throw.
 bool can_start(const Estimate& estimate, const ErrorMatrix& P) {
-  constexpr double kLowestM = 6.35e6;  // from the Earth's centre
-  return is_sane(estimate, P) && P.diagonal().minCoeff() > 0.0 &&
+  constexpr double kLowestM = 6.35e6;     // from the Earth's centre
+  constexpr double kLargestTurnRad = 10.0;  // beyond, rounding makes a negative variance of another
+  return is_sane(estimate, P) && is_positive_definite(P) &&
+         P.diagonal().segment<3>(kPsi).maxCoeff() < kLargestTurnRad * kLargestTurnRad &&
          estimate.nav.r_e_m.norm() > kLowestM;
 }
 
@@ -310,14 +313,15 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   const auto rival = [&](const Ekf& filter) {
     return rival_of(filter, fix, last_update_, unseen_mps);
   };
-  if (bank_->count() > HeadingBank::kMaxRivals) {
-    if (gate_recovery_.is_repeated()) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
-    return;
-  }
   const Ekf& doubting = bank_->most_doubting();
   const double scale = doubting.inertial().noise_scale();
+  const bool is_repeated = gate_recovery_.is_repeated();
+  if (is_repeated && doubt_heading(rival(bank_->best()), rival(doubting))) return;
+  if (bank_->count() > HeadingBank::kMaxRivals) {
+    if (is_repeated) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
+    return;
+  }
   // The more its IMU is doubted already, the likelier the filter is what is wrong.
-  if (gate_recovery_.is_repeated() && doubt_heading(rival(bank_->best()), rival(doubting))) return;
   bank_->challenge(rival(doubting), scale * scale * odds);
 }
 
