@@ -59,7 +59,7 @@ bool has_white_error(const GnssFix& fix) {
 bool can_start(const Estimate& estimate, const ErrorMatrix& P) {
   constexpr double kLowestM = 6.35e6;     // from the Earth's centre
   constexpr double kLargestTurnRad = 10.0;  // beyond, rounding makes a negative variance of another
-  return is_sane(estimate, P) && is_positive_definite(P) &&
+  return is_sane(estimate, P) && P.diagonal().minCoeff() > 0.0 &&
          P.diagonal().segment<3>(kPsi).maxCoeff() < kLargestTurnRad * kLargestTurnRad &&
          estimate.nav.r_e_m.norm() > kLowestM;
 }
@@ -67,7 +67,7 @@ bool can_start(const Estimate& estimate, const ErrorMatrix& P) {
 /// The filter several times, its heading as uncertain as told.
 std::optional<HeadingBank> bank_of_headings(const Ekf& filter, double sigma_rad) {
   const ErrorMatrix P = filter.covariance();
-  if (!can_start(filter.estimate(), P)) return std::nullopt;
+  if (!can_start(filter.estimate(), P) || !is_positive_definite(P)) return std::nullopt;
   HeadingBank bank = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
   std::optional<VehicleState> vehicle = filter.vehicle();
   if (vehicle) vehicle->cross.setZero();
@@ -249,12 +249,14 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   using Outcome = UpdateOutcome::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
   const bool is_gated = last_update_.outcome == Outcome::kGated;
-  // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
+  // A fix that is refused alone, or that cannot be true, is an outlier: it says nothing of the noise of the others, and its
   // distance is not one that the estimate has drifted.
+  const bool was_row = gate_recovery_.is_row();
+  const double odds = is_gated ? gate_recovery_.odds_of(fix) : 0.0;
+  const bool is_outlier = is_gated && (!was_row || odds == 0.0);
   const bool differ_in_heading = bank_->count() > HeadingBank::kMaxRivals;
-  if (!differ_in_heading && (!is_gated || gate_recovery_.is_row())) learn_noise(fix);
+  if (!differ_in_heading && !is_outlier) learn_noise(fix);
   if (is_gated) {
-    const double odds = gate_recovery_.odds_of(fix);
     if (odds > 0.0 && !is_explained) challenge(fix, odds);
     return Verdict::kGated;
   }
