@@ -9,9 +9,9 @@ namespace leeway {
 
 template class BasicEkf<SymmetricKernel<double>>;
 
-void bridge(Ekf& filter, Time to, bool course_turns_along) {
+void bridge(Ekf& filter, Time to, double turn_sigma_rad) {
   edit(filter, [&](Belief& belief) {
-    bridge(belief, to, filter.inertial().noise(), course_turns_along);
+    bridge(belief, to, filter.inertial().noise(), turn_sigma_rad);
   });
 }
 

@@ -13,12 +13,12 @@
 namespace leeway {
 namespace {
 
-constexpr double kLongestLagS = 0.3;       // between the halves of a fix
+constexpr double kLongestLagS = 0.3;        // between the halves of a fix
 constexpr double kVelocityMayComeS = 10.0;  // a receiver silent for longer gives none
-constexpr double kShortestBaseS = 4.0;      // between positions: their noise over it is a velocity's
+constexpr double kShortestBaseS = 4.0;      // between positions: over less, noise is all there is
 constexpr double kLongestBaseS = 61.0;
-constexpr double kLargestTiltRad = 0.35;    // beyond, an attitude is no start for a linear filter
-constexpr double kUnseenMps2 = 0.5;         // by which a velocity may differ from its mean
+constexpr double kLargestTiltRad = 0.35;  // beyond, an attitude is no start for a linear filter
+constexpr double kUnseenMps2 = 0.5;       // by which a velocity may differ from its mean
 
 /// Where a fix says, with this attitude.
 Alignment start_at(const GnssFix& fix, const Eigen::Quaterniond& q_eb) {
@@ -161,7 +161,8 @@ std::optional<Alignment> Aligner::take_position(const GnssFix& fix) {
                                    until_middle_.dr_start_m / first_base_s;
   const double over_s = 0.5 * (first_base_s + base_s);
   const double sigma_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
-  const Eigen::Quaterniond q_turn = until_middle_.q_start_end.conjugate() * since_first_.q_start_end;
+  const Eigen::Quaterniond q_turn =
+      until_middle_.q_start_end.conjugate() * since_first_.q_start_end;
   const double turn_rad = 2.0 * std::acos(std::min(1.0, std::abs(q_turn.w())));
   GnssFix whole = fix;
   const double bend_mps = (dv_e_mps.norm() / over_s + kUnseenMps2) * 0.5 * base_s;

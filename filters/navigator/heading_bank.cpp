@@ -56,7 +56,8 @@ bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
 HeadingBank::HeadingBank(const Ekf& filter) : count_(1) { members_[0].emplace(filter); }
 
 HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
-                         const Eigen::Vector3d& axis_e, double sigma_rad) {
+                         const Eigen::Vector3d& axis_e, double sigma_rad,
+                         double course_turns_s) {
   if (!(std::abs(axis_e.norm() - 1.0) < 1e-9)) {
     throw Error("heading bank: axis_e has norm " + std::to_string(axis_e.norm()) +
                 ", must be 1 within 1e-9");
@@ -83,10 +84,19 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
         (static_cast<double>(k) - 0.5 * static_cast<double>(count_ - 1)) * spacing_rad;
     const Eigen::Vector3d turn_e_rad = turn_rad * axis_e;
     ErrorMatrix P_member = turned_with_body(P, exp_rotation(turn_e_rad));
-    P_member.block<3, 3>(kPsi, kPsi) +=
-        member_sigma_rad * member_sigma_rad * axis_e * axis_e.transpose();
-    members_[k].emplace(config, turned_about_antenna(estimate, turn_e_rad, config.lever_arm_b_m),
-                        P_member);
+    Estimate turned = turned_about_antenna(estimate, turn_e_rad, config.lever_arm_b_m);
+    ErrorVector turn = ErrorVector::Zero();
+    turn.segment<3>(kPsi) = member_sigma_rad * axis_e;
+    if (course_turns_s > 0.0) {
+      // At the end of the time the velocity is turned, on the way by half: the place is behind.
+      const Eigen::Vector3d before_e_mps = estimate.nav.v_e_mps;
+      turned.nav.v_e_mps = exp_rotation(turn_e_rad) * before_e_mps;
+      turned.nav.r_e_m -= 0.5 * course_turns_s * (turned.nav.v_e_mps - before_e_mps);
+      turn.segment<3>(kDv) = turn.segment<3>(kPsi).cross(turned.nav.v_e_mps);
+      turn.segment<3>(kDr) = -0.5 * course_turns_s * turn.segment<3>(kDv);
+    }
+    P_member += turn * turn.transpose();
+    members_[k].emplace(config, turned, P_member);
     log_weight_[k] = equal_weights ? 0.0 : -0.5 * turn_rad * turn_rad / means_variance_rad2;
   }
   normalize();

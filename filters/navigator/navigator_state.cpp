@@ -33,11 +33,11 @@ Aligner aligner_of(const NavigatorConfig& config) {
 
 /// Several headings about the one of the estimate.
 HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, ErrorMatrix P,
-                        double sigma_rad) {
+                        double sigma_rad, double course_turns_s = 0.0) {
   const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
   transform_block(P, kPsi, Eigen::Matrix3d::Identity() - down_e * down_e.transpose());
   P.diagonal().segment<3>(kPsi).array() += 1e-12;  // rad^2: more than what rounding takes away
-  return HeadingBank(config, estimate, P, down_e, sigma_rad);
+  return HeadingBank(config, estimate, P, down_e, sigma_rad, course_turns_s);
 }
 
 ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
@@ -65,10 +65,13 @@ bool can_start(const Estimate& estimate, const ErrorMatrix& P) {
 }
 
 /// The filter several times, its heading as uncertain as told.
-std::optional<HeadingBank> bank_of_headings(const Ekf& filter, double sigma_rad) {
+/// @param course_turns_s  over which its course may have turned along
+std::optional<HeadingBank> bank_of_headings(const Ekf& filter, double sigma_rad,
+                                            double course_turns_s = 0.0) {
   const ErrorMatrix P = filter.covariance();
   if (!can_start(filter.estimate(), P) || !is_positive_definite(P)) return std::nullopt;
-  HeadingBank bank = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
+  HeadingBank bank = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad,
+                                 course_turns_s);
   std::optional<VehicleState> vehicle = filter.vehicle();
   if (vehicle) vehicle->cross.setZero();
   bank.for_each([&](Ekf& member) {
@@ -154,8 +157,17 @@ void NavigatorState::bridge(Time to) {
     aligner_ = aligner_of(config_);
     return;
   }
-  bank_->for_each(
-      [&](Ekf& filter) { leeway::bridge(filter, to, config_.vehicle.non_holonomic); });
+  const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
+  double turn_rad = unseen_turn_rad(dt_s);
+  if (config_.vehicle.non_holonomic && bank_->collapsed()) {
+    // The course turns along. In one linear filter the constraint would tell the one by the other,
+    // and both are as wrong.
+    const double sigma_rad = std::hypot(heading_sigma_rad(bank_->best()), turn_rad);
+    auto headings = bank_of_headings(bank_->best(), sigma_rad, dt_s);
+    if (headings) bank_ = *headings;
+    if (headings) turn_rad = 0.0;
+  }
+  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, turn_rad); });
 }
 
 Verdict NavigatorState::fuse(const Reading& reading) {
@@ -173,8 +185,8 @@ Verdict NavigatorState::take(const R& reading) {
   return update.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }
 
-// At constant velocity as at rest the specific force is along gravity: neither heading nor the gyro's
-// bias about the vertical shows. What a turn has shown takes a few fixes to be read.
+// At constant velocity as at rest the specific force is along gravity: neither heading nor the
+// gyro's bias about the vertical shows. What a turn has shown takes a few fixes to be read.
 bool NavigatorState::motion_hides_heading(Time t) const {
   if (aiding_.at_rest()) return true;
   constexpr double kReadS = 10.0;
@@ -249,8 +261,8 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   using Outcome = UpdateOutcome::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
   const bool is_gated = last_update_.outcome == Outcome::kGated;
-  // A fix that is refused alone, or that cannot be true, is an outlier: it says nothing of the noise of the others, and its
-  // distance is not one that the estimate has drifted.
+  // A fix that is refused alone, or that cannot be true, is an outlier: it says nothing of the noise
+  // of the others, and its distance is not one that the estimate has drifted.
   const bool was_row = gate_recovery_.is_row();
   const double odds = is_gated ? gate_recovery_.odds_of(fix) : 0.0;
   const bool is_outlier = is_gated && (!was_row || odds == 0.0);
@@ -382,7 +394,8 @@ Health NavigatorState::health(Time now) const {
       std::sqrt(std::max({1.0, health.position_nis_ratio, health.velocity_nis_ratio}));
   using State = Health::State;
   health.imu_sigma_scale = bank_->best().inertial().noise_scale();
-  const bool is_inconsistent = health.imu_sigma_scale > kBrokenImuScale || position_noise_.is_inconsistent() ||
+  const bool is_inconsistent = health.imu_sigma_scale > kBrokenImuScale ||
+                               position_noise_.is_inconsistent() ||
                                velocity_noise_.is_inconsistent();
   health.state = gate_recovery_.is_row()          ? State::kGating
                  : health.coasting_s > kCoastingS ? State::kCoasting

@@ -10,6 +10,9 @@
 namespace leeway {
 namespace {
 
+// Beyond a fast walk an unknown speed is no sign of rest: a smooth road is as quiet.
+constexpr double kLargestSlackMps = 3.0;
+
 double spread(const Eigen::Vector3d& sum, const Eigen::Vector3d& square_sum, int count) {
   const Eigen::Vector3d mean = sum / count;
   return std::sqrt((square_sum / count - mean.cwiseAbs2()).cwiseMax(0.0).sum());
@@ -97,7 +100,8 @@ bool StandstillDetector::looks_still(const ImuBlock& block, const Ekf& filter) c
   const double acceleration_limit =
       config_.acceleration_mps2 + 2.0 * std::hypot(tilt_as_force, sigma(kBa), force_noise);
   return rate.norm() < turn_limit && a_e.norm() < acceleration_limit &&
-         filter.estimate().nav.v_e_mps.norm() < config_.speed_mps + 3.0 * sigma(kDv);
+         filter.estimate().nav.v_e_mps.norm() <
+             config_.speed_mps + std::min(3.0 * sigma(kDv), kLargestSlackMps);
 }
 
 }  // namespace leeway

@@ -33,8 +33,8 @@ class FixScreen {
   std::optional<Eigen::Vector3d> velocity_{};
 };
 
-/// The fix with no sigma below 1 mm and 1 mm/s in any direction: no receiver does better. A claim of
-/// less is a slip of the log, and would outweigh everything else.
+/// The fix with no sigma below 1 mm and 1 mm/s in any direction: no receiver does better. A smaller
+/// claim is a slip of the log, and would outweigh everything else.
 GnssFix with_floor(const GnssFix& fix);
 
 }  // namespace leeway

@@ -37,10 +37,12 @@ class HeadingBank {
   ///                   attitude errors are those of the body axes (levelling): they turn along
   /// @param axis_e     unit vector, ECEF: the local vertical, or the specific force that levelled
   /// @param sigma_rad  of the turn, >= 0; kWholeCircleRad and more: nothing is known of it
+  /// @param course_turns_s  time ahead over which the velocity turns as far as the heading, evenly;
+  ///                        0: it is known
   /// The members turn about the antenna, which is where the fixes saw it.
   /// @throws Error as Ekf does, and unless axis_e is of unit length and sigma_rad >= 0.
   HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
-              const Eigen::Vector3d& axis_e, double sigma_rad);
+              const Eigen::Vector3d& axis_e, double sigma_rad, double course_turns_s = 0.0);
 
   /// Runs f on every member: predict, bridge. f: void(Ekf&), the same for all.
   template <class F>

@@ -34,7 +34,7 @@ struct Health {
   bool mount_known{true};
   bool at_rest{false};            ///< by the detector of the vehicle aiding
   std::uint32_t repairs{0};       ///< of a covariance that was no longer positive definite
-  std::uint32_t resets{0};        ///< a refused fix proved right: the state that it spoke for took over
+  std::uint32_t resets{0};        ///< refused fixes proved right: their state took over
   std::uint32_t realignments{0};  ///< of everything
 };
 

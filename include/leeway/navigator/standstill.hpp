@@ -21,7 +21,8 @@ struct StandstillConfig {
   /// Largest mean acceleration, two sigma of the filter's attitude and bias beyond: an even
   /// slowdown is as quiet as a rest.
   double acceleration_mps2{0.2};
-  double speed_mps{0.3};  ///< largest speed, three sigma of the filter's velocity beyond
+  /// Largest speed, three sigma of the filter's velocity beyond, up to 3 m/s.
+  double speed_mps{0.3};
 
   static auto visit(auto& c, const auto& visitor) {
     return visitor(Field{"gyro_std_radps", c.gyro_std_radps, kPositive},

@@ -151,7 +151,8 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(options, folder));
   for (FuseJob& job : jobs) {
     const FuseVehicle& vehicle = options.vehicle;
-    job.estimates_mount = vehicle.estimate_mount || (vehicle.kind == VehicleKind::kCar && !job.mount_rpy_deg);
+    job.estimates_mount =
+        vehicle.estimate_mount || (vehicle.kind == VehicleKind::kCar && !job.mount_rpy_deg);
     if (!job.estimates_mount) {
       job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
     }

@@ -49,6 +49,7 @@ Json health_json(const sim::ReplayResult& r) {
           {"velocity_nis_ratio", h.velocity_nis_ratio},
           {"position_sigma_scale", h.position_sigma_scale},
           {"velocity_sigma_scale", h.velocity_sigma_scale},
+          {"imu_sigma_scale", h.imu_sigma_scale},
           {"repairs", h.repairs},
           {"resets", h.resets},
           {"realignments", h.realignments},

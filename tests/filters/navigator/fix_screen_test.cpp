@@ -17,7 +17,7 @@ GnssFix fix_of(const Geodetic& place, const Eigen::Vector3d& v_n_mps, double sig
 
 const Geodetic kHere{0.8, 0.1, 300.0};
 
-TEST_CASE("a fix repeated to the last bit is no news while the vehicle moves, by fix or by filter") {
+TEST_CASE("a fix repeated to the last bit is no news while the vehicle moves") {
   FixScreen screen;
   const GnssFix moving = fix_of(kHere, {5.0, 0.0, 0.0});
   CHECK(screen.judge(moving, false) == Finding::kNews);

@@ -14,8 +14,9 @@ GnssFix fix_at(double t_s, double east_m = 0.0) {
   constexpr double kLat = 45.0 * kRadPerDeg;
   const Geodetic place{kLat + 10.0 * t_s / 6.37e6, east_m / (6.37e6 * std::cos(kLat)), 0.0};
   GnssFix fix{time_from_seconds(t_s)};
-  fix.position = GnssPosition::from_geodetic(place, 0.01 * Eigen::Matrix3d::Identity());
-  fix.velocity = GnssVelocity::from_ned(place, {10.0, 0.0, 0.0}, 0.01 * Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d R = 0.01 * Eigen::Matrix3d::Identity();
+  fix.position = GnssPosition::from_geodetic(place, R);
+  fix.velocity = GnssVelocity::from_ned(place, {10.0, 0.0, 0.0}, R);
   return fix;
 }
 
@@ -26,7 +27,8 @@ Ekf filter_at(double t_s) {
   estimate.nav.time = fix.time;
   estimate.nav.r_e_m = fix.position->r_e_m;
   estimate.nav.v_e_mps = fix.velocity->v_e_mps;
-  const InitialSigma sigma{.tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 0.1};
+  const InitialSigma sigma{
+      .tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 0.1};
   return {EkfConfig{}, estimate, initial_covariance(estimate, sigma, EkfConfig{}.imu)};
 }
 
