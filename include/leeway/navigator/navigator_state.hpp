@@ -58,7 +58,8 @@ class NavigatorState {
   template <class Archive>
   void visit(Archive& archive) {
     archive(screen_, aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_,
-            last_update_, last_fused_, gate_recovery_, heading_doubted_, repairs_, resets_, realignments_);
+            last_update_, last_fused_, gate_recovery_, heading_doubted_, repairs_, resets_,
+            realignments_);
     archive.optional(bank_, any_bank());
   }
 

@@ -208,7 +208,7 @@ TEST_CASE("a car that nobody saw for 5 s may have turned, and its course with it
     run.score_from_s = 235.0;
     const Score score = run(seed);
     CHECK(score.worst_heading < kHonest);
-    // Known to fail at 4.5, 2026-11-30: what the constraint tells of the speed in a bend is too much.
+    // Known to fail at 4.5, 2026-11-30: in a bend the constraint tells too much of the speed.
     CHECK(score.worst_position < 6.0);
   }
 }
