@@ -113,7 +113,8 @@ UpdateOutcome BasicEkf<Kernel, Error>::update(const GnssFix& fix, const FixTrust
   if (fix.position) outcome.position_innovation_e_m = m.innovation.head<3>();
   if (fix.velocity) outcome.velocity_innovation_e_mps = m.innovation.tail<3>();
   if (outcome.outcome != UpdateOutcome::Outcome::kFused) return outcome;
-  fuse(m, fix.position ? 3 : 0, position_weight_.of(fix.time), trust.held);
+  const double weight = trust.is_white ? 1.0 : position_weight_.of(fix.time);
+  fuse(m, fix.position ? 3 : 0, weight, trust.held);
   if (fix.position) position_weight_.fused(fix.time);
   outcome.covariance_positive = has_positive_variances();
   return outcome;

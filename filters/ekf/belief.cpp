@@ -17,12 +17,11 @@ constexpr double kBridgeTiltRad = 0.1;     // roads lean; they do not turn vehic
 constexpr double kBridgeAccelerationMps2 = 3.0;
 
 /// Adds what a vehicle may have done over a time in which nobody looked.
-void add_unseen_motion(ErrorMatrix& P, const Eigen::Vector3d& r_e_m, double dt_s) {
-  const double turn_rad = std::min(kBridgeTurnRadps * dt_s, kBridgeMaxTurnRad);
-  const double tilt_rad = std::min(turn_rad, kBridgeTiltRad);
+void add_unseen_motion(ErrorMatrix& P, const NavState& nav, double dt_s, double turn_rad) {
+  const double tilt_rad = std::min(unseen_turn_rad(dt_s), kBridgeTiltRad);
   const double velocity_mps = kBridgeAccelerationMps2 * dt_s;
   const double position_m = 0.5 * velocity_mps * dt_s;
-  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(nav.r_e_m));
   const Eigen::Vector3d psi_n(tilt_rad, tilt_rad, turn_rad);
   P.block<3, 3>(kPsi, kPsi) += C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
   P.diagonal().segment<3>(kDv).array() += velocity_mps * velocity_mps;
@@ -32,6 +31,8 @@ void add_unseen_motion(ErrorMatrix& P, const Eigen::Vector3d& r_e_m, double dt_s
 }
 
 }  // namespace
+
+double unseen_turn_rad(double dt_s) { return std::min(kBridgeTurnRadps * dt_s, kBridgeMaxTurnRad); }
 
 void widen(Belief& belief, double factor) {
   belief.P *= factor;
@@ -64,7 +65,7 @@ void make_positive_definite(ErrorMatrix& P) {
   P = (0.5 * (P + P.transpose())).eval();
 }
 
-void bridge(Belief& belief, Time to, const ProcessNoise& noise) {
+void bridge(Belief& belief, Time to, const ProcessNoise& noise, double turn_sigma_rad) {
   NavState& nav = belief.estimate.nav;
   const double dt_s = to_seconds(to - nav.time);
   nav.r_e_m += dt_s * nav.v_e_mps;
@@ -74,7 +75,7 @@ void bridge(Belief& belief, Time to, const ProcessNoise& noise) {
   Phi.r.middleCols<3>(kDv) = dt_s * Eigen::Matrix3d::Identity();
   propagate(belief.P, Phi, noise);
   if (belief.vehicle) propagate(*belief.vehicle, Phi);
-  add_unseen_motion(belief.P, nav.r_e_m, dt_s);
+  add_unseen_motion(belief.P, nav, dt_s, turn_sigma_rad);
 }
 
 bool is_sane(const Estimate& estimate, const ErrorMatrix& P) {

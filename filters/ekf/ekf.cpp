@@ -9,8 +9,10 @@ namespace leeway {
 
 template class BasicEkf<SymmetricKernel<double>>;
 
-void bridge(Ekf& filter, Time to) {
-  edit(filter, [&](Belief& belief) { bridge(belief, to, filter.inertial().noise()); });
+void bridge(Ekf& filter, Time to, double turn_sigma_rad) {
+  edit(filter, [&](Belief& belief) {
+    bridge(belief, to, filter.inertial().noise(), turn_sigma_rad);
+  });
 }
 
 double heading_sigma_rad(const Ekf& filter) {

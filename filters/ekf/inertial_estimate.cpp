@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/process_noise.hpp"
 
@@ -24,6 +25,8 @@ ErrorDynamics InertialEstimate::advance(const ImuIncrement& inc) {
   mean_omega_ib_b_radps_ +=
       inc.dt_s / mean_rate_window_s_ * (omega_ib_b_radps_ - mean_omega_ib_b_radps_);
   const StrapdownStep step = strapdown_step_(estimate_.nav, corrected, history_);
+  mean_force_e_mps2_ +=
+      1.0 / mean_rate_window_s_ * (step.dv_f_e_mps - inc.dt_s * mean_force_e_mps2_);
   const ErrorDynamics dynamics{.dt_s = inc.dt_s,
                                .C_eb_mean = step.C_eb_mean,
                                .dv_f_e_mps = step.dv_f_e_mps,
@@ -32,6 +35,16 @@ ErrorDynamics InertialEstimate::advance(const ImuIncrement& inc) {
   estimate_.bias.b_a_mps2 *= dynamics.a_a;
   estimate_.bias.b_g_radps *= dynamics.g_g;
   return dynamics;
+}
+
+ProcessNoise InertialEstimate::noise() const {
+  // Along the radius gravity is 0.2 deg off the plumb line: 0.03 m/s^2, nothing beside a manoeuvre.
+  const Eigen::Vector3d up_e = estimate_.nav.r_e_m.normalized();
+  const MeanMotion motion{
+      mean_omega_ib_b_radps_ - estimate_.bias.b_g_radps,
+      mean_rate_window_s_ > 0.0 ? Eigen::Vector3d(mean_force_e_mps2_ - kStandardGravityMps2 * up_e)
+                                : Eigen::Vector3d::Zero()};
+  return with_motion(scaled(noise_, noise_scale_), config_.imu, motion);
 }
 
 Measurement InertialEstimate::measurement(const GnssFix& fix) const {

@@ -35,4 +35,30 @@ ProcessNoise process_noise(const ImuErrorModel& model, const BiasStates& biases)
       .tau_g_s = g.tau_s};
 }
 
+ProcessNoise with_motion(const ProcessNoise& noise, const ImuErrorModel& model,
+                         const MeanMotion& motion) {
+  constexpr double kTurnS = 5.0;
+  const auto variance = [](const TriadErrorModel& triad) {
+    return triad.scale_sigma * triad.scale_sigma +
+           triad.misalignment_sigma_rad * triad.misalignment_sigma_rad;
+  };
+  const double rate2 = motion.omega_ib_b_radps.squaredNorm();
+  const double acceleration2 = motion.acceleration_e_mps2.squaredNorm();
+  const double G_g2 = model.G_g_sigma_radps_per_mps2 * model.G_g_sigma_radps_per_mps2;
+  ProcessNoise result = noise;
+  result.attitude_rad2_per_s += kTurnS * (variance(model.gyro) * rate2 + G_g2 * acceleration2);
+  result.velocity_m2_per_s3 += kTurnS * variance(model.accelerometer) * acceleration2;
+  return result;
+}
+
+ProcessNoise scaled(const ProcessNoise& noise, double sigma_scale) {
+  const double variance_scale = sigma_scale * sigma_scale;
+  ProcessNoise result = noise;
+  result.attitude_rad2_per_s *= variance_scale;
+  result.velocity_m2_per_s3 *= variance_scale;
+  result.b_a_m2_per_s5 *= variance_scale;
+  result.b_g_rad2_per_s3 *= variance_scale;
+  return result;
+}
+
 }  // namespace leeway

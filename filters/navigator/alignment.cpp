@@ -13,7 +13,12 @@
 namespace leeway {
 namespace {
 
-constexpr double kLongestLagS = 0.3;  // between the halves of a fix
+constexpr double kLongestLagS = 0.3;        // between the halves of a fix
+constexpr double kVelocityMayComeS = 10.0;  // a receiver silent for longer gives none
+constexpr double kShortestBaseS = 4.0;      // between positions: over less, noise is all there is
+constexpr double kLongestBaseS = 61.0;
+constexpr double kLargestTiltRad = 0.35;  // beyond, an attitude is no start for a linear filter
+constexpr double kUnseenMps2 = 0.5;       // by which a velocity may differ from its mean
 
 /// Where a fix says, with this attitude.
 Alignment start_at(const GnssFix& fix, const Eigen::Quaterniond& q_eb) {
@@ -50,13 +55,27 @@ Aligner::Aligner(const AlignmentConfig& config, const EkfConfig& filter)
   validate_fields("alignment", config);
 }
 
+void Aligner::Sum::add(const ImuIncrement& inc) {
+  dt_s += inc.dt_s;
+  dtheta_b_rad += inc.dtheta_b_rad;
+  dv_b_mps += inc.dv_b_mps;
+  const Eigen::Vector3d felt_mps =
+      q_start_end * (exp_quaternion(0.5 * inc.dtheta_b_rad) * inc.dv_b_mps);
+  dr_start_m += inc.dt_s * (dv_start_mps + 0.5 * felt_mps);
+  dv_start_mps += felt_mps;
+  q_start_end = (q_start_end * exp_quaternion(inc.dtheta_b_rad)).normalized();
+}
+
 void Aligner::push(const ImuIncrement& inc) {
-  since_fix_.dt_s += inc.dt_s;
-  since_fix_.dtheta_b_rad += inc.dtheta_b_rad;
-  since_fix_.dv_b_mps += inc.dv_b_mps;
+  since_fix_.add(inc);
+  since_first_.add(inc);
 }
 
 std::optional<Alignment> Aligner::push(const GnssFix& fix) {
+  if (fix.velocity) newest_velocity_ = fix.time;
+  const bool has_velocity =
+      newest_velocity_ && to_seconds(fix.time - *newest_velocity_) < kVelocityMayComeS;
+  if (!has_velocity) return take_position(fix);
   if (fix.position && fix.velocity) return take(fix);
   const bool completes = half_ && half_->position.has_value() == fix.velocity.has_value() &&
                          to_seconds(fix.time - half_->time) <= kLongestLagS;
@@ -75,6 +94,7 @@ std::optional<Alignment> Aligner::take(const GnssFix& fix) {
   const bool in_a_row = previous_ && since_fix_.dt_s > 0.0 &&
                         to_seconds(fix.time - previous_->time) <= config_.max_fix_interval_s;
   std::optional<Alignment> result;
+  if (previous_ && !in_a_row && fix.position) result = align_apart(fix, *previous_->velocity);
   if (in_a_row) {
     const bool at_rest = watch_rest(*fix.velocity);
     const bool moving = fix.velocity->v_e_mps.norm() >= config_.min_speed_mps &&
@@ -103,6 +123,94 @@ bool Aligner::watch_rest(const GnssVelocity& velocity) {
   rest_.dtheta_b_rad += since_fix_.dtheta_b_rad;
   rest_.dv_b_mps += since_fix_.dv_b_mps;
   return true;
+}
+
+/// Two fixes that are far apart.
+std::optional<Alignment> Aligner::align_apart(const GnssFix& fix,
+                                              const GnssVelocity& before) const {
+  const Sum& sum = since_fix_;
+  if (!(sum.dt_s > 0.0 && sum.dt_s <= kLongestBaseS)) return std::nullopt;
+  const double sigma_mps = std::sqrt(before.R_e_m2ps2.diagonal().maxCoeff() +
+                                     fix.velocity->R_e_m2ps2.diagonal().maxCoeff());
+  return align_by({fix.velocity->v_e_mps - before.v_e_mps, sum.dv_start_mps, sum.dt_s,
+                   sum.q_start_end, sigma_mps, 0.0},
+                  fix);
+}
+
+/// The second difference of three positions is a change of velocity; of what the IMU has felt the
+/// same difference is taken.
+std::optional<Alignment> Aligner::take_position(const GnssFix& fix) {
+  const double first_base_s = until_middle_.dt_s;
+  const double base_s = since_first_.dt_s - (middle_ ? first_base_s : 0.0);
+  if (!first_ || since_first_.dt_s > 2.0 * kLongestBaseS) {
+    first_ = fix;
+    middle_.reset();
+    since_first_ = Sum{};
+    return std::nullopt;
+  }
+  if (base_s < kShortestBaseS || (middle_ && base_s < 0.9 * first_base_s)) return std::nullopt;
+  if (!middle_) {
+    middle_ = fix;
+    until_middle_ = since_first_;
+    return std::nullopt;
+  }
+  const Eigen::Vector3d v_e_mps = (fix.position->r_e_m - middle_->position->r_e_m) / base_s;
+  const Eigen::Vector3d dv_e_mps =
+      v_e_mps - (middle_->position->r_e_m - first_->position->r_e_m) / first_base_s;
+  const Eigen::Vector3d felt_mps = (since_first_.dr_start_m - until_middle_.dr_start_m) / base_s -
+                                   until_middle_.dr_start_m / first_base_s;
+  const double over_s = 0.5 * (first_base_s + base_s);
+  const double sigma_m = std::sqrt(fix.position->R_e_m2.diagonal().maxCoeff());
+  const Eigen::Quaterniond q_turn =
+      until_middle_.q_start_end.conjugate() * since_first_.q_start_end;
+  const double turn_rad = 2.0 * std::acos(std::min(1.0, std::abs(q_turn.w())));
+  GnssFix whole = fix;
+  const double bend_mps = (dv_e_mps.norm() / over_s + kUnseenMps2) * 0.5 * base_s;
+  const double sigma_mps = std::hypot(std::sqrt(2.0) * sigma_m / base_s, bend_mps);
+  whole.velocity = {v_e_mps, sigma_mps * sigma_mps * Eigen::Matrix3d::Identity()};
+  const Push push{dv_e_mps, felt_mps, over_s, since_first_.q_start_end,
+                  std::sqrt(6.0) * sigma_m / std::min(base_s, first_base_s), turn_rad};
+  const auto result = align_by(push, whole);
+  first_ = fix;
+  middle_.reset();
+  since_first_ = Sum{};
+  return result;
+}
+
+std::optional<Alignment> Aligner::align_by(const Push& push, const GnssFix& fix) const {
+  const Eigen::Vector3d f_e_mps =
+      push.dv_e_mps - push.over_s * gravity_e(GravityModel::kNormal, fix.position->r_e_m);
+  InitialSigma sigma = sigma_of(fix);
+  sigma.tilt_rad = std::hypot(
+      std::hypot(config_.tilt_floor_rad,
+                 filter_.imu.accelerometer.bias_sigma / kStandardGravityMps2),
+      push.sigma_mps / (push.over_s * kStandardGravityMps2),
+      std::min(filter_.imu.gyro.bias_sigma * push.over_s, kLargestTiltRad));
+  sigma.heading_rad = sigma.tilt_rad;
+  if (sigma.tilt_rad > 2.0 * kLargestTiltRad) return std::nullopt;
+
+  const Eigen::Quaterniond q_e_start = Eigen::Quaterniond::FromTwoVectors(push.felt_mps, f_e_mps);
+  Eigen::Quaterniond q_eb = q_e_start * push.q_start_end;
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(fix.position->r_e_m));
+  const Eigen::Vector3d v_n = C_en.transpose() * fix.velocity->v_e_mps;
+  const double speed_mps = v_n.head<2>().norm();
+  double turn_sigma_rad = std::numbers::pi;
+  if (config_.heading_from_course && speed_mps >= config_.min_speed_mps) {
+    // The course is the mean one of the last interval: half a turn ago.
+    const Eigen::Vector3d forward_n = C_en.transpose() * (q_eb * Eigen::Vector3d::UnitX());
+    const double yaw_rad = wrap_pi(std::atan2(v_n.y(), v_n.x()) -
+                                   std::atan2(forward_n.y(), forward_n.x()));
+    q_eb = exp_quaternion(yaw_rad * C_en.col(2)) * q_eb;
+    turn_sigma_rad = std::hypot(config_.sideslip_rad,
+                                std::hypot(sigma.velocity_mps / speed_mps, 0.5 * push.turn_rad));
+  }
+  Alignment result = start_at(fix, q_eb);
+  result.axis_e = C_en.col(2);
+  result.turn_sigma_rad = turn_sigma_rad;
+  result.P = initial_covariance(result.estimate, sigma, filter_.imu);
+  transform_block(result.P, kPsi,
+                  Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose());
+  return result;
 }
 
 Alignment Aligner::align_by_course(const GnssFix& fix, const GnssVelocity& before) const {

@@ -1,67 +1,123 @@
 #include "leeway/navigator/gate_recovery.hpp"
 
-#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "leeway/model/gnss_measurement.hpp"
 
 namespace leeway {
 namespace {
 
-constexpr std::uint32_t kWidenFrom = 3;
-constexpr std::uint32_t kRestartFrom = 10;
-constexpr std::uint32_t kLockOuts = 3;  // so many within so long: widening does not cure it
-constexpr double kLockOutsWithinS = 120.0;
-constexpr double kRelapseS = 60.0;              // after a restart; and of probation
-constexpr std::uint32_t kTrustAgainAfter = 30;  // fixes fused in a row
-constexpr double kUnknownVelocityMps = 30.0;
+// An IMU or a model that fails once in a quarter of an hour, against one fix in a hundred that is
+// wrong: the odds that a refusal is the filter's fault grow with the time since a fix confirmed it.
+constexpr double kOddsPerS = 0.1;
+constexpr double kLowestOdds = 0.01;
+constexpr double kSigmas = 5.0;
+constexpr double kLongestMemoryS = 300.0;  // being right for longer proves no more
+constexpr double kLargestTurnRad = 1.8;    // of an attitude that is anywhere: pi / sqrt(3)
+
+/// Shrinks the variances of three errors to what they can be at all.
+void hold_below(ErrorMatrix& P, int block, double sigma) {
+  for (int i = block; i < block + 3; ++i) {
+    const double shrunk = std::min(1.0, sigma / std::sqrt(P(i, i)));
+    P.row(i) *= shrunk;
+    P.col(i) *= shrunk;
+  }
+}
+
+double largest_sigma(const Eigen::Matrix3d& P) { return std::sqrt(P.diagonal().maxCoeff()); }
 
 }  // namespace
 
-GateRecovery::Remedy GateRecovery::refused(const GnssFix& fix) {
-  fused_in_a_row_ = 0;
-  if (in_a_row_++ == 0) since_ = fix.time;
-  const Remedy remedy = remedy_for(fix);
-  previous_ = fix;
-  return remedy;
+void GateRecovery::begin(Time t) {
+  good_since_ = t;
+  good_time_.reset();
+  refused_since_.reset();
+  rival_since_.reset();
+  rival_.reset();
 }
 
-void GateRecovery::fused(const GnssFix& fix) {
-  end();
-  previous_ = fix;
-  if (++fused_in_a_row_ < kTrustAgainAfter || !distrusts_imu_) return;
-  distrusts_imu_ = false;
-  on_probation_since_ = fix.time;
+void GateRecovery::fused(const GnssFix& fix, const Ekf& filter) {
+  refused_since_.reset();
+  rival_since_.reset();
+  rival_.reset();
+  good_time_ = fix.time;
+  good_r_e_m_ = antenna_position_e(filter.estimate(), filter.inertial().config().lever_arm_b_m);
+  good_v_e_mps_ = filter.estimate().nav.v_e_mps;
+  const ErrorMatrix& P = filter.kernel().matrix();
+  good_sigma_m_ = largest_sigma(P.block<3, 3>(kDr, kDr));
+  good_sigma_mps_ = largest_sigma(P.block<3, 3>(kDv, kDv));
 }
 
-GateRecovery::Remedy GateRecovery::remedy_for(const GnssFix& fix) {
-  const auto is_soon_after = [&fix](const std::optional<Time>& t) {
-    return t && to_seconds(fix.time - *t) < kRelapseS;
-  };
-  if (in_a_row_ == kWidenFrom && is_soon_after(on_probation_since_)) distrusts_imu_ = true;
-  if (distrusts_imu_ && previous_ && agree(*previous_, fix)) return Remedy::kRestart;
-  if (in_a_row_ < kWidenFrom) return Remedy::kWait;
-  if (in_a_row_ == kWidenFrom && comes_back(fix.time)) return Remedy::kRealign;
-  if (in_a_row_ < kRestartFrom) return Remedy::kWiden;
-  if (!fix.position) return Remedy::kWait;
-  const bool relapse = is_soon_after(last_restart_);
-  last_restart_ = fix.time;
-  return relapse ? Remedy::kRealign : Remedy::kRestart;
-}
-
-bool GateRecovery::comes_back(Time t) {
-  if (!first_lock_out_ || to_seconds(t - *first_lock_out_) > kLockOutsWithinS) {
-    first_lock_out_ = t;
-    lock_outs_ = 0;
+bool GateRecovery::is_reachable(const GnssFix& fix) const {
+  if (!good_time_) return true;
+  const double dt_s = to_seconds(fix.time - *good_time_);
+  if (!(dt_s >= 0.0)) return false;
+  const double gained_mps = std::min(limits_.acceleration_mps2 * dt_s, 2.0 * limits_.speed_mps);
+  if (fix.position) {
+    const double off_m =
+        (fix.position->r_e_m - good_r_e_m_ - dt_s * good_v_e_mps_).norm();
+    const double sigma_m = std::hypot(good_sigma_m_, largest_sigma(fix.position->R_e_m2),
+                                      dt_s * good_sigma_mps_);
+    if (off_m > 0.5 * gained_mps * dt_s + kSigmas * sigma_m) return false;
   }
-  return ++lock_outs_ >= kLockOuts;
+  if (!fix.velocity) return true;
+  const double sigma_mps = std::hypot(good_sigma_mps_, largest_sigma(fix.velocity->R_e_m2ps2));
+  return (fix.velocity->v_e_mps - good_v_e_mps_).norm() <= gained_mps + kSigmas * sigma_mps;
 }
 
-void restart_motion(Ekf& filter, const GnssFix& fix) {
-  const Eigen::Matrix3d unknown =
-      kUnknownVelocityMps * kUnknownVelocityMps * Eigen::Matrix3d::Identity();
-  edit(filter, [&](Belief& belief) {
-    restart_motion(belief, fix.position->r_e_m, fix.position->R_e_m2,
-                   fix.velocity ? fix.velocity->v_e_mps : belief.estimate.nav.v_e_mps,
-                   fix.velocity ? fix.velocity->R_e_m2ps2 : unknown);
+bool GateRecovery::continues_rival(const GnssFix& fix) const {
+  if (!rival_ || !rival_->position || !fix.position) return false;
+  const double dt_s = to_seconds(fix.time - rival_->time);
+  const double gained_mps = std::min(limits_.acceleration_mps2 * dt_s, 2.0 * limits_.speed_mps);
+  const Eigen::Vector3d v_e_mps = rival_->velocity ? rival_->velocity->v_e_mps : good_v_e_mps_;
+  const double off_m = (fix.position->r_e_m - rival_->position->r_e_m - dt_s * v_e_mps).norm();
+  const double sigma_m =
+      std::hypot(largest_sigma(rival_->position->R_e_m2), largest_sigma(fix.position->R_e_m2));
+  return off_m <= 0.5 * gained_mps * dt_s + kSigmas * sigma_m;
+}
+
+double GateRecovery::odds_of(const GnssFix& fix) {
+  if (!refused_since_) refused_since_ = fix.time;
+  if (!fix.position) return 0.0;
+  if (!continues_rival(fix)) rival_since_ = fix.time;
+  rival_ = fix;
+  const double unconfirmed_s = to_seconds(fix.time - good_time_.value_or(good_since_));
+  const double good_s =
+      std::min(to_seconds(good_time_.value_or(good_since_) - good_since_), kLongestMemoryS);
+  const bool has_outlived = to_seconds(fix.time - *rival_since_) > good_s;
+  if (!is_reachable(fix) && !has_outlived) return 0.0;
+  return has_outlived ? 1.0 : std::clamp(kOddsPerS * unconfirmed_s, kLowestOdds, 1.0);
+}
+
+Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal,
+             double unseen_mps) {
+  constexpr double kLargestWidening = 100.0;  // of variances: ten times the sigma
+  constexpr double kNoise = 2.0;              // on the sigma of the IMU's noise
+  // Where the vehicle is comes first. Attitude and biases are doubted when that did not do.
+  const bool is_second = filter.inertial().noise_scale() > 1.0;
+  const double widening =
+      is_second ? std::clamp(refusal.nis / refusal.gate, 2.0, kLargestWidening) : 1.0;
+  const Eigen::Matrix3d unseen =
+      unseen_mps * unseen_mps * Eigen::Matrix3d::Identity();
+  const auto& [nav, bias] = filter.estimate();
+  const Eigen::Vector3d& lever_b_m = filter.inertial().config().lever_arm_b_m;
+  const Eigen::Vector3d antenna_e_mps =
+      antenna_velocity_e(filter.estimate(), lever_b_m, filter.inertial().omega_ib_b_radps());
+  const Eigen::Vector3d r_e_m = fix.position->r_e_m - nav.q_eb * lever_b_m;
+  const Eigen::Vector3d v_e_mps =
+      fix.velocity ? Eigen::Vector3d(fix.velocity->v_e_mps - antenna_e_mps + nav.v_e_mps)
+                   : nav.v_e_mps;
+  Ekf rival = filter;
+  edit(rival, [&](Belief& belief) {
+    widen(belief, widening);
+    hold_below(belief.P, kPsi, kLargestTurnRad);
+    restart_motion(belief, r_e_m, fix.position->R_e_m2, v_e_mps,
+                   fix.velocity ? fix.velocity->R_e_m2ps2 : unseen);
   });
+  rival.scale_imu_noise(
+      std::min(kNoise * filter.inertial().noise_scale(), kLargestImuScale));
+  return rival;
 }
 
 }  // namespace leeway

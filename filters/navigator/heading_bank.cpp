@@ -56,7 +56,8 @@ bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
 HeadingBank::HeadingBank(const Ekf& filter) : count_(1) { members_[0].emplace(filter); }
 
 HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
-                         const Eigen::Vector3d& axis_e, double sigma_rad) {
+                         const Eigen::Vector3d& axis_e, double sigma_rad,
+                         double course_turns_s) {
   if (!(std::abs(axis_e.norm() - 1.0) < 1e-9)) {
     throw Error("heading bank: axis_e has norm " + std::to_string(axis_e.norm()) +
                 ", must be 1 within 1e-9");
@@ -71,7 +72,7 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
     // Three sigmas to either side, or the circle.
     const double range_rad = std::min(6.0 * sigma_rad, 2.0 * kPi);
     count_ = static_cast<std::size_t>(
-        std::min(std::ceil(range_rad / kSpacingRad), static_cast<double>(kMaxFilters)));
+        std::min(std::ceil(range_rad / kSpacingRad), static_cast<double>(kMaxHeadings)));
     spacing_rad = range_rad / static_cast<double>(count_);
     member_sigma_rad = 0.5 * spacing_rad;
   }
@@ -83,10 +84,19 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
         (static_cast<double>(k) - 0.5 * static_cast<double>(count_ - 1)) * spacing_rad;
     const Eigen::Vector3d turn_e_rad = turn_rad * axis_e;
     ErrorMatrix P_member = turned_with_body(P, exp_rotation(turn_e_rad));
-    P_member.block<3, 3>(kPsi, kPsi) +=
-        member_sigma_rad * member_sigma_rad * axis_e * axis_e.transpose();
-    members_[k].emplace(config, turned_about_antenna(estimate, turn_e_rad, config.lever_arm_b_m),
-                        P_member);
+    Estimate turned = turned_about_antenna(estimate, turn_e_rad, config.lever_arm_b_m);
+    ErrorVector turn = ErrorVector::Zero();
+    turn.segment<3>(kPsi) = member_sigma_rad * axis_e;
+    if (course_turns_s > 0.0) {
+      // At the end of the time the velocity is turned, on the way by half: the place is behind.
+      const Eigen::Vector3d before_e_mps = estimate.nav.v_e_mps;
+      turned.nav.v_e_mps = exp_rotation(turn_e_rad) * before_e_mps;
+      turned.nav.r_e_m -= 0.5 * course_turns_s * (turned.nav.v_e_mps - before_e_mps);
+      turn.segment<3>(kDv) = turn.segment<3>(kPsi).cross(turned.nav.v_e_mps);
+      turn.segment<3>(kDr) = -0.5 * course_turns_s * turn.segment<3>(kDv);
+    }
+    P_member += turn * turn.transpose();
+    members_[k].emplace(config, turned, P_member);
     log_weight_[k] = equal_weights ? 0.0 : -0.5 * turn_rad * turn_rad / means_variance_rad2;
   }
   normalize();
@@ -162,6 +172,36 @@ void HeadingBank::merge() {
     }
   }
   normalize();
+}
+
+void HeadingBank::challenge(const Ekf& rival, double odds, std::size_t max_count) {
+  if (count_ >= max_count) drop(lightest_but_best());
+  std::size_t free = 0;
+  while (members_[free]) ++free;
+  members_[free].emplace(rival);
+  log_weight_[free] = log_weight_[best_] + std::log(odds);
+  ++count_;
+  normalize();
+}
+
+const Ekf& HeadingBank::most_doubting() const {
+  const Ekf* most = &best();
+  for (const std::optional<Ekf>& member : members_) {
+    if (member && member->inertial().noise_scale() > most->inertial().noise_scale()) {
+      most = &*member;
+    }
+  }
+  return *most;
+}
+
+/// @pre there are two.
+std::size_t HeadingBank::lightest_but_best() const {
+  std::size_t lightest = kMaxFilters;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k] || k == best_) continue;
+    if (lightest == kMaxFilters || log_weight_[k] < log_weight_[lightest]) lightest = k;
+  }
+  return lightest;
 }
 
 void HeadingBank::drop(std::size_t k) {

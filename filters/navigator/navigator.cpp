@@ -131,14 +131,40 @@ Verdict Navigator::take(const ImuIncrement& inc) {
   Step step{inc};
   step.inc.time = clock_.counted_on(inc.time);
   if (verdict == Verdict::kClockJump) timeline_.restart(NavigatorState(config_), step.inc.time);
+  if (verdict == Verdict::kDuplicate) carry_over(inc);
   if (verdict != Verdict::kAccepted) return verdict;
 
   const double dt_s = before ? to_seconds(step.inc.time - *before) : inc.dt_s;
+  add_carried(step.inc, dt_s);
+  newest_ = inc;
   step.is_gap = std::max(dt_s, inc.dt_s) > config_.max_gap_s;
-  if (dt_s != inc.dt_s) step.inc = stretched(step.inc, dt_s);
+  if (dt_s != step.inc.dt_s) step.inc = stretched(step.inc, dt_s);
   timeline_.push(step);
   if (step.is_gap) return Verdict::kGap;
   return aligned() ? Verdict::kAccepted : Verdict::kAligning;
+}
+
+// An increment that differs from the one of its time is motion, with a stamp that is wrong: it
+// belongs to the time until the next one. Rates that were lost cost little, and have no duration.
+void Navigator::carry_over(const ImuIncrement& inc) {
+  if (newest_ && newest_->dtheta_b_rad == inc.dtheta_b_rad && newest_->dv_b_mps == inc.dv_b_mps) {
+    return;
+  }
+  ImuIncrement sum = inc;
+  if (carried_) append(sum, *carried_);
+  carried_ = sum;
+}
+
+/// @param dt_s  to the increment before
+void Navigator::add_carried(ImuIncrement& inc, double dt_s) {
+  if (!carried_) return;
+  const double with_it_s = inc.dt_s + carried_->dt_s;
+  if (std::abs(dt_s - with_it_s) < std::abs(dt_s - inc.dt_s)) {
+    const Time end = inc.time;
+    append(inc, *carried_);
+    inc.time = end;
+  }
+  carried_.reset();
 }
 
 Verdict Navigator::push(const Reading& reading) {

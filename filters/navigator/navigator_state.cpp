@@ -4,8 +4,7 @@
 #include <cmath>
 #include <variant>
 
-#include "leeway/covariance/covariance.hpp"
-#include "leeway/earth/earth.hpp"
+#include "filters/navigator/heading_spread.hpp"
 #include "leeway/model/heading.hpp"
 
 namespace leeway {
@@ -23,16 +22,11 @@ Aligner aligner_of(const NavigatorConfig& config) {
   AlignmentConfig alignment = config.alignment;
   // A bank of headings with the non-holonomic constraint finds the course as the heading by itself,
   // slip and turns included.
-  if (!config.C_bs || config.vehicle.non_holonomic) alignment.heading_from_course = false;
+  if (!config.C_bs || config.vehicle.non_holonomic ||
+      !limits_of(config.vehicle.kind).goes_where_it_points) {
+    alignment.heading_from_course = false;
+  }
   return Aligner(alignment, filter_of(config));
-}
-
-/// Several headings about the one of the estimate.
-HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, ErrorMatrix P,
-                        double sigma_rad) {
-  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
-  transform_block(P, kPsi, Eigen::Matrix3d::Identity() - down_e * down_e.transpose());
-  return HeadingBank(config, estimate, P, down_e, sigma_rad);
 }
 
 ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
@@ -40,6 +34,13 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
   result.dtheta_b_rad = C_bs * inc.dtheta_b_rad;
   result.dv_b_mps = C_bs * inc.dv_b_mps;
   return result;
+}
+
+/// Carrier phase with fixed ambiguities: what is left is noise and multipath of centimetres, which
+/// changes with every few metres. Errors of code last for half a minute.
+bool has_white_error(const GnssFix& fix) {
+  constexpr double kFixedM = 0.05;  // a quarter of the carrier's wavelength
+  return fix.position && fix.position->R_e_m2.trace() < 3.0 * kFixedM * kFixedM;
 }
 
 bool is_sane(HeadingBank& bank) {
@@ -60,7 +61,8 @@ NavigatorState::NavigatorState(const NavigatorConfig& config)
     : config_(config),
       aligner_(aligner_of(config)),
       aiding_(config.vehicle, config.filter.imu),
-      C_bs_(config.C_bs) {
+      C_bs_(config.C_bs),
+      gate_recovery_(limits_of(config.vehicle.kind)) {
   validate(config);
 }
 
@@ -75,7 +77,7 @@ void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
 void NavigatorState::begin(const HeadingBank& bank) {
   bank_ = bank;
   last_fused_ = bank_->best().estimate().nav.time;
-  gate_recovery_.end();
+  gate_recovery_.begin(*last_fused_);
   if (C_bs_) begin_vehicle();
 }
 
@@ -106,20 +108,9 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
 
 void NavigatorState::open_heading() {
   if (!bank_->collapsed()) return;
-  const Ekf& filter = bank_->best();
-  const double sigma_rad = heading_sigma_rad(filter);
-  const ErrorMatrix P = filter.covariance();
-  // What a new filter would refuse to start from goes on in the old one: push does not throw.
-  constexpr double kLowestM = 6.35e6;  // from the Earth's centre
-  const bool can_start = is_sane(filter.estimate(), P) && P.diagonal().minCoeff() > 0.0 &&
-                         filter.estimate().nav.r_e_m.norm() > kLowestM;
-  if (!(sigma_rad > HeadingBank::kOneFilterRad) || !can_start) return;
-  std::optional<VehicleState> vehicle = filter.vehicle();
-  bank_ = bank_around(filter.inertial().config(), filter.estimate(), P, sigma_rad);
-  if (!vehicle) return;
-  vehicle->cross.setZero();
-  bank_->for_each(
-      [&](Ekf& member) { edit(member, [&](Belief& belief) { belief.vehicle = vehicle; }); });
+  const double sigma_rad = heading_sigma_rad(bank_->best());
+  if (!(sigma_rad > HeadingBank::kOneFilterRad)) return;
+  if (const auto headings = bank_of_headings(bank_->best(), sigma_rad)) bank_ = *headings;
 }
 
 void NavigatorState::bridge(Time to) {
@@ -128,7 +119,17 @@ void NavigatorState::bridge(Time to) {
     aligner_ = aligner_of(config_);
     return;
   }
-  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to); });
+  const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
+  double turn_rad = unseen_turn_rad(dt_s);
+  if (config_.vehicle.non_holonomic && bank_->collapsed()) {
+    // The course turns along. In one linear filter the constraint would tell the one by the other,
+    // and both are as wrong.
+    const double sigma_rad = std::hypot(heading_sigma_rad(bank_->best()), turn_rad);
+    auto headings = bank_of_headings(bank_->best(), sigma_rad, dt_s);
+    if (headings) bank_ = *headings;
+    if (headings) turn_rad = 0.0;
+  }
+  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, turn_rad); });
 }
 
 Verdict NavigatorState::fuse(const Reading& reading) {
@@ -146,20 +147,64 @@ Verdict NavigatorState::take(const R& reading) {
   return update.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }
 
+// At constant velocity as at rest the specific force is along gravity: neither heading nor the
+// gyro's bias about the vertical shows. What a turn has shown takes a few fixes to be read.
+bool NavigatorState::motion_hides_heading(Time t) const {
+  if (aiding_.at_rest()) return true;
+  constexpr double kReadS = 10.0;
+  constexpr double kReadFixes = 3.0;
+  const double fix_interval_s = to_seconds(t - last_fused_.value_or(t));
+  return !config_.vehicle.non_holonomic &&
+         aiding_.even_motion_s() > std::max(kReadS, kReadFixes * fix_interval_s);
+}
+
+bool NavigatorState::moves() const {
+  constexpr double kMovesMps = 0.5;
+  if (!bank_) return false;
+  const Ekf& filter = bank_->best();
+  const double sigma_mps = std::sqrt(filter.kernel().matrix().diagonal().segment<3>(kDv).sum());
+  return filter.estimate().nav.v_e_mps.norm() > kMovesMps + 3.0 * sigma_mps;
+}
+
 Verdict NavigatorState::take(const GnssFix& fix) {
+  switch (screen_.judge(fix, moves())) {
+    case FixScreen::Finding::kNone:
+      return Verdict::kImplausible;
+    case FixScreen::Finding::kRepeated:
+      return Verdict::kRepeated;
+    case FixScreen::Finding::kNews:
+      break;
+  }
+  return use(with_floor(fix));
+}
+
+Verdict NavigatorState::use(const GnssFix& fix) {
   if (!bank_) {
     align(fix);
     return Verdict::kAligning;
   }
   if (heading_sigma_rad(bank_->best()) > kOpenRad) open_heading();
+  const bool was_refused = gate_recovery_.is_row();
+  const Ekf* best = &bank_->best();
+  bool is_explained = false;  // by any of the filters
   last_update_ = bank_->update([&](Ekf& filter) {
-    const bool hides = aiding_.at_rest() && rest_hides_heading(filter);
-    return filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
-                               hides ? Held::kHeadingAndTurn : Held::kNothing});
+    const bool hides = motion_hides_heading(fix.time) && rest_hides_heading(filter);
+    const UpdateOutcome outcome =
+        filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
+                            hides ? Held::kHeadingAndTurn : Held::kNothing, has_white_error(fix)});
+    is_explained = is_explained || outcome.outcome == UpdateOutcome::Outcome::kFused;
+    return outcome;
   });
-  const Verdict verdict = settle(fix);
-  if (bank_ && !is_sane(*bank_)) realign();
-  if (!bank_) return verdict;
+  Verdict verdict = settle(fix, is_explained);
+  if (was_refused && verdict == Verdict::kFused && best != &bank_->best()) {
+    ++resets_;
+    gate_recovery_.begin(fix.time);
+    verdict = Verdict::kReset;
+  }
+  if (!is_sane(*bank_)) {
+    realign();
+    return Verdict::kReset;
+  }
   bank_->for_each([this](Ekf& filter) {
     if (!repair_covariance(filter)) ++repairs_;
   });
@@ -169,21 +214,28 @@ Verdict NavigatorState::take(const GnssFix& fix) {
 
 void NavigatorState::align(const GnssFix& fix) {
   const auto found = aligner_.push(fix);
-  if (!found) return;
+  if (!found || !can_start(found->estimate, found->P)) return;
   begin(HeadingBank(filter_of(config_), found->estimate, found->P, found->axis_e,
                     found->turn_sigma_rad));
 }
 
-Verdict NavigatorState::settle(const GnssFix& fix) {
+Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   using Outcome = UpdateOutcome::Outcome;
   if (last_update_.outcome == Outcome::kUnusable) return Verdict::kImplausible;
   const bool is_gated = last_update_.outcome == Outcome::kGated;
-  // A fix that is refused alone is an outlier: it says nothing of the noise of the others, and its
-  // distance is not one that the estimate has drifted.
-  if (bank_->collapsed() && (!is_gated || gate_recovery_.is_row())) learn_noise(fix);
-  if (is_gated) return recover(fix);
+  // A fix that is refused alone, or that cannot be true, is an outlier: it says nothing of the
+  // noise of the others, and its distance is not one that the estimate has drifted.
+  const bool was_row = gate_recovery_.is_row();
+  const double odds = is_gated ? gate_recovery_.odds_of(fix) : 0.0;
+  const bool is_outlier = is_gated && (!was_row || odds == 0.0);
+  const bool differ_in_heading = bank_->count() > HeadingBank::kMaxRivals;
+  if (!differ_in_heading && !is_outlier) learn_noise(fix);
+  if (is_gated) {
+    if (odds > 0.0 && !is_explained) challenge(fix, odds);
+    return Verdict::kGated;
+  }
   last_fused_ = fix.time;
-  gate_recovery_.fused(fix);
+  gate_recovery_.fused(fix, bank_->best());
   return Verdict::kFused;
 }
 
@@ -196,6 +248,7 @@ void NavigatorState::learn_noise(const GnssFix& fix) {
   if (fix.position) {
     position_noise_.note(fix.time, u.position_innovation_e_m, fix.position->R_e_m2, u.position_nis);
   }
+  learn_imu_noise(fix);
   // Positions that keep away from the prediction by more than both claim, and agree with each
   // other, are believed at last: a receiver that settles, or one that was wrong before.
   constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
@@ -206,31 +259,65 @@ void NavigatorState::learn_noise(const GnssFix& fix) {
        [&](Belief& belief) { belief.P.diagonal().segment<3>(kDr).array() += variance_m2; });
 }
 
-Verdict NavigatorState::recover(const GnssFix& fix) {
-  switch (gate_recovery_.refused(fix)) {
-    case GateRecovery::Remedy::kWait:
-      return Verdict::kGated;
-    case GateRecovery::Remedy::kWiden:
-      bank_->for_each([](Ekf& filter) {
-        edit(filter, [](Belief& belief) { widen(belief, GateRecovery::kWidening); });
-      });
-      return Verdict::kGated;
-    case GateRecovery::Remedy::kRestart:
-      bank_->for_each([&fix](Ekf& filter) { restart_motion(filter, fix); });
-      last_fused_ = fix.time;
-      gate_recovery_.end();
-      break;
-    case GateRecovery::Remedy::kRealign:
-      realign();
-      break;
+// What neither the receiver's noise nor chance explains is the IMU's. Fast up, slow down: to claim
+// too little for a minute costs less than to claim too much.
+void NavigatorState::learn_imu_noise(const GnssFix& fix) {
+  constexpr double kUpS = 30.0;
+  constexpr double kDownS = 300.0;
+  constexpr double kBeyondChance = 1.5;  // 90 degrees of freedom stay below with 99.8 %
+  constexpr double kLargestRatio = 4.0;
+  Ekf& filter = bank_->best();
+  const double dt_s = std::clamp(to_seconds(fix.time - last_fused_.value_or(fix.time)), 0.0, kUpS);
+  // A slow error of the receiver's positions would be taken for the IMU's.
+  const double position_ratio =
+      filter.inertial().config().gnss_correlation_s == 0.0 || has_white_error(fix)
+          ? position_noise_.nis_ratio()
+          : 0.0;
+  const double ratio = std::max(position_ratio, velocity_noise_.nis_ratio());
+  double scale = filter.inertial().noise_scale();
+  if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kLargestRatio), dt_s / kUpS);
+  if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / kDownS);
+  filter.scale_imu_noise(std::min(scale, kLargestImuScale));
+}
+
+void NavigatorState::challenge(const GnssFix& fix, double odds) {
+  constexpr double kLeastUnseenMps = 1.0;
+  constexpr double kMostUnseenMps = 30.0;
+  const double gained_mps = limits_of(config_.vehicle.kind).acceleration_mps2 *
+                            to_seconds(fix.time - last_fused_.value_or(fix.time));
+  const double unseen_mps = std::clamp(gained_mps, kLeastUnseenMps, kMostUnseenMps);
+  const auto rival = [&](const Ekf& filter) {
+    return rival_of(filter, fix, last_update_, unseen_mps);
+  };
+  const Ekf& doubting = bank_->most_doubting();
+  const double scale = doubting.inertial().noise_scale();
+  const bool is_repeated = gate_recovery_.is_repeated();
+  if (is_repeated && doubt_heading(rival(bank_->best()), rival(doubting))) return;
+  if (bank_->count() > HeadingBank::kMaxRivals) {
+    if (is_repeated) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
+    return;
   }
-  ++resets_;
-  return Verdict::kReset;
+  // The more its IMU is doubted already, the likelier the filter is what is wrong.
+  bank_->challenge(rival(doubting), scale * scale * odds);
+}
+
+// Fixes that agree with each other and with no filter: it is the heading, or the IMU.
+bool NavigatorState::doubt_heading(Ekf restarted, const Ekf& doubting) {
+  constexpr double kOnceInS = 60.0;
+  const Time now = restarted.estimate().nav.time;
+  if (heading_doubted_ && to_seconds(now - *heading_doubted_) < kOnceInS) return false;
+  restarted.scale_imu_noise(bank_->best().inertial().noise_scale());
+  auto headings = bank_of_headings(restarted, HeadingBank::kWholeCircleRad);
+  if (!headings) return false;
+  headings->challenge(doubting, 1.0, HeadingBank::kMaxFilters);
+  headings->challenge(bank_->best(), 1.0, HeadingBank::kMaxFilters);
+  bank_ = *headings;
+  heading_doubted_ = now;
+  return true;
 }
 
 void NavigatorState::realign() {
   ++realignments_;
-  gate_recovery_.realigned(bank_->best().estimate().nav.time);
   bank_.reset();
   aligner_ = aligner_of(config_);
   C_bs_ = config_.C_bs;
@@ -244,39 +331,6 @@ void NavigatorState::find_mount() {
   bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
   begin_vehicle();
-}
-
-Health NavigatorState::health(Time now) const {
-  constexpr double kCoastingS = 2.0;
-  Health health{.mount_known = C_bs_.has_value(),
-                .at_rest = aiding_.at_rest(),
-                .repairs = repairs_,
-                .resets = resets_,
-                .realignments = realignments_};
-  if (!bank_) return health;
-  const auto since = [now](const std::optional<Time>& then) {
-    return then ? std::max(0.0, to_seconds(now - *then)) : 0.0;
-  };
-  health.coasting_s = since(last_fused_);
-  health.gating_s = since(gate_recovery_.since());
-  health.position_nis_ratio = position_noise_.nis_ratio();
-  health.velocity_nis_ratio = velocity_noise_.nis_ratio();
-  health.position_sigma_scale = position_noise_.sigma_scale();
-  health.velocity_sigma_scale = velocity_noise_.sigma_scale();
-  health.correlated_fixes =
-      config_.filter.gnss_correlation_s == 0.0 && position_noise_.errors_last();
-  health.optimistic_by =
-      std::sqrt(std::max({1.0, health.position_nis_ratio, health.velocity_nis_ratio}));
-  using State = Health::State;
-  const bool is_inconsistent = gate_recovery_.distrusts_imu() ||
-                               position_noise_.is_inconsistent() ||
-                               velocity_noise_.is_inconsistent();
-  health.state = gate_recovery_.is_row()          ? State::kGating
-                 : health.coasting_s > kCoastingS ? State::kCoasting
-                 : !bank_->collapsed()            ? State::kHeadingOpen
-                 : is_inconsistent                ? State::kInconsistent
-                                                  : State::kAligned;
-  return health;
 }
 
 }  // namespace leeway

@@ -15,7 +15,8 @@ constexpr double kInconsistentRatio = 2.0;  // by a full window: once in 1e7
 constexpr double kFalseAlarm = 1e-6;        // by fewer fixes
 constexpr double kBandLow = 0.5;            // 90 degrees of freedom stay within with 99.99 %
 constexpr double kBandHigh = 1.6;
-constexpr double kLargestScale = 10.0;
+constexpr double kLargestScale = 1000.0;
+constexpr int kNoOutliers = 5;  // so many changes in a row beyond kLargestRatio: the claim is wrong
 constexpr double kLongestIntervalS = 2.0;  // between longer ones the filter's own error changes too
 
 /// Exponential mean that starts as the plain one.
@@ -48,6 +49,12 @@ void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen:
   constexpr double kExpected = 2.0 * 3.0;
   const double largest = kLargestRatio * sigma_scale_ * sigma_scale_;
   const double ratio = change.dot(R.llt().solve(change)) / kExpected;
+  surprises_ = ratio > largest ? surprises_ + 1 : 0;
+  if (surprises_ > kNoOutliers) {
+    sigma_scale_ = std::min(2.0 * sigma_scale_, kLargestScale);
+    change_ratio_ = sigma_scale_ * sigma_scale_;
+    return;
+  }
   average(change_ratio_, change_count_, std::min(ratio, largest));
   if (change_count_ < kWindow) return;
   // Towards the scale that explains the changes, in about a window; a claim that would do by itself

@@ -16,8 +16,12 @@ constexpr double kOpenHeadingRightM = 1.0;
 
 }  // namespace
 
-VehicleConfig VehicleConfig::car() {
+VehicleConfig VehicleConfig::car() { return of(VehicleKind::kCar); }
+
+VehicleConfig VehicleConfig::of(VehicleKind kind) {
   VehicleConfig config;
+  config.kind = kind;
+  if (kind != VehicleKind::kCar) return config;
   for (const VehiclePart& part : kVehicleParts) config.*part.is_on = true;
   return config;
 }
@@ -49,6 +53,7 @@ void VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
   const auto block = blocks_.push(inc);
   if (!block) return;
   at_rest_ = standstill_.push(*block, bank.best());
+  even_motion_s_ = standstill_.is_even(*block, bank.best()) ? even_motion_s_ + block->dt_s : 0.0;
   at_rest_ ? rest(*block, bank) : roll(*block, bank);
 }
 

@@ -38,6 +38,16 @@ Time time_of(const Row& row) {
   return row.time;
 }
 
+/// Whether a row whose time is that of the row before is to be added to the one after it: then only
+/// its time is wrong. A row that repeats the one before altogether is no news.
+template <class Row>
+bool carries_over(const Row& /*row*/, const Row& /*before*/) {
+  return false;
+}
+
+template <class Row>
+void add_to(Row& /*row*/, const Row& /*carried*/) {}
+
 /// The rows of a log in strictly increasing time. Each counts as a record.
 template <class Row>
 class LogSource final : public RecordSource<Row> {
@@ -50,6 +60,8 @@ class LogSource final : public RecordSource<Row> {
     if (row && (!last_ || time_of(*row) - *last_ > kSuspectJump)) row = settle(std::move(*row));
     if (!row) return row;
     last_ = time_of(*row);
+    newest_ = *row;
+    if (carried_) add_to(*row, *std::exchange(carried_, std::nullopt));
     ++summary_.records;
     return row;
   }
@@ -71,6 +83,8 @@ class LogSource final : public RecordSource<Row> {
         reject(LineDamage::kTooLong);
       } else if (const auto fault = parser_(line_, row)) {
         summary_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
+      } else if (last_ && time_of(row) == *last_ && carries_over(row, *newest_)) {
+        carry_over(row);
       } else if (last_ && time_of(row) <= *last_) {
         reject_order(time_of(row), *last_);
       } else {
@@ -102,6 +116,14 @@ class LogSource final : public RecordSource<Row> {
     }
   }
 
+  void carry_over(const Row& row) {
+    Row sum = row;
+    if (carried_) add_to(sum, *carried_);
+    carried_ = sum;
+    newest_ = row;
+    ++summary_.carried_over;
+  }
+
   void reject_order(Time time, Time before) {
     reject(time < before ? LineDamage::kTimeGoesBack : LineDamage::kDuplicateTime);
   }
@@ -117,6 +139,8 @@ class LogSource final : public RecordSource<Row> {
   std::string_view line_{};    // read last
   std::optional<Row> held_{};  // read ahead to settle() the row before it
   std::optional<Time> last_{};
+  std::optional<Row> newest_{};   // as it was read
+  std::optional<Row> carried_{};  // waits for the next row
 };
 
 }  // namespace leeway

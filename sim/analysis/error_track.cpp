@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "leeway/earth/earth.hpp"
 #include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
@@ -40,12 +41,15 @@ ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
   for (std::size_t k = 0; k < steps * kPiecesPerStep; ++k) {
     const TruthPoint truth = truth_at(trajectory, (static_cast<double>(k) + 0.5) * piece_s_);
     pieces_.push_back({truth.nav.q_eb.toRotationMatrix(), gravity_gradient_e(truth.nav.r_e_m),
-                       truth.f_ib_b_mps2, truth.omega_ib_b_radps});
+                       truth.f_ib_b_mps2, truth.omega_ib_b_radps,
+                       truth.nav.q_eb * truth.f_ib_b_mps2 +
+                           gravity_e(GravityModel::kNormal, truth.nav.r_e_m)});
   }
   Phi_.reserve(steps);
   for (std::size_t step = 0; step < steps; ++step) {
     const Leg whole = part(step, 0.0, step_s_);
     Phi_.push_back(whole.Phi);
+    motion_.push_back(whole.motion);
     if (config_.parameters) B_.push_back(whole.B);
   }
 }
@@ -60,6 +64,7 @@ Leg ErrorTrack::leg(double from_s, double to_s) const {
   Leg result;
   if (to_the_end && offset_s < slack_s) {
     result.Phi = Phi_[step];
+    result.motion = motion_[step];
     if (config_.parameters) result.B = B_[step];
   } else {
     result = part(step, offset_s, to_the_end ? step_s_ : to_s - start_s);
@@ -92,8 +97,13 @@ Leg ErrorTrack::part(std::size_t step, double from_s, double to_s) const {
     const double begin_s = std::max(from_s, static_cast<double>(i) * piece_s_);
     const double end_s = std::min(to_s, static_cast<double>(i + 1) * piece_s_);
     if (end_s - begin_s <= kSlack * piece_s_) continue;
-    extend(leg, pieces_[step * kPiecesPerStep + i], end_s - begin_s);
+    const Piece& piece = pieces_[step * kPiecesPerStep + i];
+    extend(leg, piece, end_s - begin_s);
+    leg.motion.omega_ib_b_radps += (end_s - begin_s) * piece.omega_ib_b_radps;
+    leg.motion.acceleration_e_mps2 += (end_s - begin_s) * piece.acceleration_e_mps2;
   }
+  leg.motion.omega_ib_b_radps /= leg.Phi.dt_s;
+  leg.motion.acceleration_e_mps2 /= leg.Phi.dt_s;
   return leg;
 }
 

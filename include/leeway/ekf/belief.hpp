@@ -31,11 +31,15 @@ void restart_motion(Belief& belief, const Eigen::Vector3d& r_e_m, const Eigen::M
 /// state is small beside another for its unit alone.
 void make_positive_definite(ErrorMatrix& P);
 
+/// 1 sigma of what a vehicle turns over a time in which nobody looks: at 0.5 rad/s, up to 1 rad.
+double unseen_turn_rad(double dt_s);
+
 /// Carries the belief over a time without IMU data: constant velocity relative to the Earth,
-/// attitude held in the Earth-fixed frame. Its uncertainty grows as that of a vehicle that may turn
-/// at 0.5 rad/s, up to 1 rad, lean by as much up to 0.1 rad, and accelerate at 3 m/s^2 (1 sigma).
+/// attitude held in the Earth-fixed frame. Its uncertainty grows as that of a vehicle that may
+/// turn, lean at 0.5 rad/s up to 0.1 rad, and accelerate at 3 m/s^2 (1 sigma).
+/// @param turn_sigma_rad  of the turn that nobody saw, about the vertical
 /// @pre to > belief.estimate.nav.time.
-void bridge(Belief& belief, Time to, const ProcessNoise& noise);
+void bridge(Belief& belief, Time to, const ProcessNoise& noise, double turn_sigma_rad);
 
 /// Whether estimate and covariance are numbers of a size that arithmetic can bear.
 bool is_sane(const Estimate& estimate, const ErrorMatrix& P);

@@ -88,6 +88,9 @@ class BasicEkf {
   /// @pre P symmetric positive semidefinite, everything finite.
   void set(const Belief& belief) requires SettableKernel<Kernel>;
 
+  /// Takes the IMU for as much noisier than its model says, from here on.
+  void scale_imu_noise(double sigma_scale) { inertial_.set_noise_scale(sigma_scale); }
+
   /// Renames the body axes: what was v_b is C_new_old * v_b. The vehicle's parameters are
   /// forgotten.
   /// @param lever_arm_b_m  IMU to antenna in the new axes
@@ -128,7 +131,7 @@ void edit(Ekf& filter, F&& f) {
 }
 
 /// bridge() of what the filter believes. @pre to > filter.estimate().nav.time.
-void bridge(Ekf& filter, Time to);
+void bridge(Ekf& filter, Time to, double turn_sigma_rad);
 
 /// 1 sigma of the attitude error about the vertical, rad; of the last propagation.
 double heading_sigma_rad(const Ekf& filter);

@@ -31,7 +31,13 @@ class InertialEstimate {
 
   const Estimate& estimate() const { return estimate_; }
   const EkfConfig& config() const { return config_; }
-  const ProcessNoise& noise() const { return noise_; }
+
+  /// Noise of the IMU in the present motion.
+  ProcessNoise noise() const;
+
+  /// Factor on the deviations of the model's noise.
+  double noise_scale() const { return noise_scale_; }
+  void set_noise_scale(double sigma_scale) { noise_scale_ = sigma_scale; }
 
   /// Measured rate (bias not removed) of the newest increment, rad/s; zero before any data.
   const Eigen::Vector3d& omega_ib_b_radps() const { return omega_ib_b_radps_; }
@@ -54,8 +60,8 @@ class InertialEstimate {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(estimate_, history_, omega_ib_b_radps_, mean_omega_ib_b_radps_, mean_rate_window_s_,
-            config_.lever_arm_b_m);
+    archive(estimate_, history_, omega_ib_b_radps_, mean_omega_ib_b_radps_, mean_force_e_mps2_,
+            mean_rate_window_s_, noise_scale_, config_.lever_arm_b_m);
   }
 
  private:
@@ -66,6 +72,8 @@ class InertialEstimate {
   ImuHistory history_{};
   Eigen::Vector3d omega_ib_b_radps_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d mean_omega_ib_b_radps_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d mean_force_e_mps2_{Eigen::Vector3d::Zero()};  // specific force, likewise
+  double noise_scale_{1.0};
   double mean_rate_window_s_{0.0};  // grows to kMeanRateS: the first mean is over all there is
 };
 

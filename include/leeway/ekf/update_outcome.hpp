@@ -39,6 +39,7 @@ struct FixTrust {
   double position_sigma_scale{1.0};
   double velocity_sigma_scale{1.0};
   Held held{Held::kNothing};
+  bool is_white{false};  ///< the position's error is its own, whatever the configuration says
 };
 
 }  // namespace leeway

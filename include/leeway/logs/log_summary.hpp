@@ -37,6 +37,9 @@ struct LogSummary {
 
   std::int64_t lines{0};    ///< that carry data: no header, comments, blank lines
   std::int64_t records{0};  ///< delivered
+  /// Lines whose time repeats that of the line before. What they hold, an increment, happened: it
+  /// was added to the next record.
+  std::int64_t carried_over{0};
   std::array<std::int64_t, kLineDamageCount> damaged{};  ///< indexed by LineDamage
   std::vector<std::string> messages{};  ///< of the first damaged lines: path:line:column: reason
   std::string incomplete{};             ///< empty, or why the file ended early (LineReader::damage)

@@ -2,6 +2,7 @@
 /// The white noise that drives the error state, from the error model of the IMU.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <limits>
 
@@ -58,5 +59,20 @@ struct BiasStates {
 /// the constant part, which does not decay, towards zero.
 /// @throws Error when the model is invalid.
 ProcessNoise process_noise(const ImuErrorModel& model, const BiasStates& biases = {});
+
+/// What the vehicle does on average over a few seconds.
+struct MeanMotion {
+  Eigen::Vector3d omega_ib_b_radps{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d acceleration_e_mps2{Eigen::Vector3d::Zero()};  ///< relative to the Earth
+};
+
+/// The noise with what scale factors, misalignments and g-sensitivity add to it, which are no
+/// states: an error in proportion to the motion, of variance sigma^2 |motion|^2, that lasts as long
+/// as a turn, 5 s. At constant velocity there is none: what they make of gravity is in the bias.
+ProcessNoise with_motion(const ProcessNoise& noise, const ImuErrorModel& model,
+                         const MeanMotion& motion);
+
+/// The noise of an IMU whose errors are larger by a factor.
+ProcessNoise scaled(const ProcessNoise& noise, double sigma_scale);
 
 }  // namespace leeway

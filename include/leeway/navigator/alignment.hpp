@@ -58,7 +58,9 @@ struct Alignment {
 /// Collects IMU data and fixes until the attitude can be told. With heading from course that is
 /// when the vehicle moves fast enough; a long wait at a standstill is normal, and yields the gyro
 /// bias. Without, it is levelled after a rest, or on the move by two fixes in a row, and its
-/// heading is left open. No heap, no exceptions after construction.
+/// heading is left open. Fixes up to a minute apart, and positions without velocity (three, evenly
+/// spaced over 8 s and more), are levelled by what the IMU has integrated in between. No heap, no
+/// exceptions after construction.
 class Aligner {
  public:
   /// @throws Error when the configuration is invalid.
@@ -67,19 +69,33 @@ class Aligner {
   /// @pre inc.dt_s > 0.
   void push(const ImuIncrement& inc);
 
-  /// The alignment at the time of this fix, as soon as two fixes with velocity in a row allow it. A
-  /// fix that was cut in two for its lags is put together again. @pre is_usable(fix); increments up
+  /// The alignment at the time of this fix, as soon as the fixes so far allow it. A fix that was
+  /// cut in two for its lags is put together again. @pre is_usable(fix); increments up
   /// to fix.time have been pushed.
   std::optional<Alignment> push(const GnssFix& fix);
 
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(previous_, half_, since_fix_, rest_);
+    archive(previous_, half_, since_fix_, rest_, newest_velocity_, first_, middle_, since_first_,
+            until_middle_);
   }
 
  private:
+  /// A change of velocity, and what the IMU felt of it. Both are means over `over_s` in effect.
+  struct Push {
+    Eigen::Vector3d dv_e_mps;
+    Eigen::Vector3d felt_mps;  ///< specific force, integrated; axes of the body at the start
+    double over_s;
+    Eigen::Quaterniond q_start_end;
+    double sigma_mps;  ///< of dv_e_mps
+    double turn_rad;   ///< since the course was as the fix says
+  };
+
   std::optional<Alignment> take(const GnssFix& fix);
+  std::optional<Alignment> take_position(const GnssFix& fix);
+  std::optional<Alignment> align_apart(const GnssFix& fix, const GnssVelocity& before) const;
+  std::optional<Alignment> align_by(const Push& push, const GnssFix& fix) const;
   bool watch_rest(const GnssVelocity& velocity);
   Alignment align_by_course(const GnssFix& fix, const GnssVelocity& before) const;
   Alignment level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const;
@@ -88,12 +104,17 @@ class Aligner {
   struct Sum {
     template <class Archive>
     void visit(Archive& archive) {
-      archive(dt_s, dtheta_b_rad, dv_b_mps);
+      archive(dt_s, dtheta_b_rad, dv_b_mps, q_start_end, dv_start_mps, dr_start_m);
     }
 
+    void add(const ImuIncrement& inc);
+
     double dt_s{0.0};
-    Eigen::Vector3d dtheta_b_rad{Eigen::Vector3d::Zero()};
+    Eigen::Vector3d dtheta_b_rad{Eigen::Vector3d::Zero()};  // the plain sums
     Eigen::Vector3d dv_b_mps{Eigen::Vector3d::Zero()};
+    Eigen::Quaterniond q_start_end{Eigen::Quaterniond::Identity()};  // from the first body axes
+    Eigen::Vector3d dv_start_mps{Eigen::Vector3d::Zero()};  // specific force, integrated in them
+    Eigen::Vector3d dr_start_m{Eigen::Vector3d::Zero()};    // ... and once more
   };
 
   AlignmentConfig config_;
@@ -102,6 +123,11 @@ class Aligner {
   std::optional<GnssFix> half_{};  // waits for its other half
   Sum since_fix_{};
   Sum rest_{};
+  std::optional<Time> newest_velocity_{};
+  std::optional<GnssFix> first_{};  // of three positions without velocity
+  std::optional<GnssFix> middle_{};
+  Sum since_first_{};
+  Sum until_middle_{};
 };
 
 }  // namespace leeway

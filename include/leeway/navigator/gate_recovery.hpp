@@ -1,80 +1,76 @@
 /// @file
-/// What to do when the gate refuses one fix after another.
+/// A refused fix is a question with two answers: the fix is wrong, or the filter is.
 #pragma once
 
-#include <cstdint>
+#include <Eigen/Core>
 #include <optional>
 
 #include "leeway/earth/time.hpp"
 #include "leeway/ekf/ekf.hpp"
+#include "leeway/navigator/vehicle_kind.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 
 namespace leeway {
 
-/// Counts the fixes refused in a row. Chance alone does not refuse three: from there on the filter
-/// is what is wrong, and the remedies grow with the row. No heap, no exceptions.
+/// Factor on an IMU's noise beyond which it is no IMU of its kind.
+inline constexpr double kLargestImuScale = 300.0;
+
+/// Decides which refused fixes may be true. It weighs them against what the vehicle can have done
+/// since the last good one, and against how long each side has been consistent: by times and
+/// distances, so that the answer is the same at 0.1 and at 20 s between fixes. No heap, no
+/// exceptions. Source: docs/theory/navigator/gate_recovery.md.
 class GateRecovery {
  public:
-  enum class Remedy : std::uint8_t {
-    kWait,     ///< it may be an outlier
-    kWiden,    ///< P by kWidening
-    kRestart,  ///< position and velocity anew from the fix
-    kRealign,  ///< the attitude is wrong too: that has been tried within the last minutes
-  };
-  static constexpr double kWidening = 2.0;
+  explicit GateRecovery(const VehicleLimits& limits) : limits_(limits) {}
 
   /// The gate has refused a fix.
-  Remedy refused(const GnssFix& fix);
+  /// @returns odds of the fix to the filter, before later fixes are heard; 0: it cannot be true
+  double odds_of(const GnssFix& fix);
 
-  void fused(const GnssFix& fix);
+  /// A fix was fused.
+  void fused(const GnssFix& fix, const Ekf& filter);
 
-  /// Motion began anew: the row has ended.
-  void end() {
-    in_a_row_ = 0;
-    since_.reset();
-  }
-
-  /// Everything but the IMU begins anew: earlier rows say nothing of it.
-  void realigned(Time t) {
-    end();
-    first_lock_out_.reset();
-    on_probation_since_ = t;
-  }
-
-  /// Taking everything anew did not end the refusal: what remains wrong is the IMU. Until thirty
-  /// fixes are fused in a row, one that is refused and agrees with the one before is taken for
-  /// position and velocity; for a minute after that the IMU is on probation.
-  bool distrusts_imu() const { return distrusts_imu_; }
+  /// Motion began anew: nothing from before counts.
+  void begin(Time t);
 
   /// Whether the newest fix was refused.
-  bool is_row() const { return in_a_row_ > 0; }
+  bool is_row() const { return refused_since_.has_value(); }
+
+  /// Whether the newest refused fix agrees with one refused before it.
+  bool is_repeated() const { return rival_ && rival_->time > *rival_since_; }
 
   /// The first of the fixes refused in a row.
-  const std::optional<Time>& since() const { return since_; }
+  const std::optional<Time>& since() const { return refused_since_; }
 
+  /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(since_, last_restart_, on_probation_since_, first_lock_out_, previous_, lock_outs_,
-            in_a_row_, fused_in_a_row_, distrusts_imu_);
+    archive(good_time_, good_r_e_m_, good_v_e_mps_, good_sigma_m_, good_sigma_mps_, good_since_,
+            refused_since_, rival_since_, rival_);
   }
 
  private:
-  Remedy remedy_for(const GnssFix& fix);
-  bool comes_back(Time t);
+  bool is_reachable(const GnssFix& fix) const;
+  bool continues_rival(const GnssFix& fix) const;
 
-  std::optional<Time> since_{};
-  std::optional<Time> last_restart_{};
-  std::optional<Time> on_probation_since_{};  // the IMU, since all else was taken anew
-  std::optional<Time> first_lock_out_{};
-  std::optional<GnssFix> previous_{};
-  std::uint32_t lock_outs_{0};
-  std::uint32_t in_a_row_{0};
-  std::uint32_t fused_in_a_row_{0};
-  bool distrusts_imu_{false};
+  VehicleLimits limits_;
+  std::optional<Time> good_time_{};  // of the last fix that was fused, and the filter's state then
+  Eigen::Vector3d good_r_e_m_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d good_v_e_mps_{Eigen::Vector3d::Zero()};
+  double good_sigma_m_{0.0};
+  double good_sigma_mps_{0.0};
+  Time good_since_{};
+  std::optional<Time> refused_since_{};
+  std::optional<Time> rival_since_{};  // of the refused fixes that agree with each other
+  std::optional<GnssFix> rival_{};
 };
 
-/// Position and velocity anew, as the fix has them; a velocity that it lacks is the filter's own,
-/// with 30 m/s of sigma. @pre fix.position, and is_usable(fix).
-void restart_motion(Ekf& filter, const GnssFix& fix);
+/// The filter as it is if the fix is right: position and velocity anew, as the fix has them, and an
+/// attitude, biases and an IMU as much less certain as the refusal suggests. A velocity that the
+/// fix lacks is the filter's own, with as much sigma as the vehicle can have changed it by.
+/// @param unseen_mps  1 sigma of that
+/// @pre fix.position, and is_usable(fix).
+Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal,
+             double unseen_mps);
 
 }  // namespace leeway

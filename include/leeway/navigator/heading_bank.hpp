@@ -20,7 +20,9 @@ namespace leeway {
 /// Source: Alspach and Sorenson (1972); docs/theory/navigator/heading_bank.md.
 class HeadingBank {
  public:
-  static constexpr std::size_t kMaxFilters = 12;
+  static constexpr std::size_t kMaxHeadings = 12;
+  static constexpr std::size_t kMaxFilters = kMaxHeadings + 2;
+  static constexpr std::size_t kMaxRivals = 3;  ///< more at a time cost more than they tell
   /// Up to this spread one filter is enough.
   static constexpr double kOneFilterRad = 15.0 * kRadPerDeg;
   /// From this spread on the heading is anywhere on the circle.
@@ -35,10 +37,12 @@ class HeadingBank {
   ///                   attitude errors are those of the body axes (levelling): they turn along
   /// @param axis_e     unit vector, ECEF: the local vertical, or the specific force that levelled
   /// @param sigma_rad  of the turn, >= 0; kWholeCircleRad and more: nothing is known of it
+  /// @param course_turns_s  time ahead over which the velocity turns as far as the heading, evenly;
+  ///                        0: it is known
   /// The members turn about the antenna, which is where the fixes saw it.
   /// @throws Error as Ekf does, and unless axis_e is of unit length and sigma_rad >= 0.
   HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
-              const Eigen::Vector3d& axis_e, double sigma_rad);
+              const Eigen::Vector3d& axis_e, double sigma_rad, double course_turns_s = 0.0);
 
   /// Runs f on every member: predict, bridge. f: void(Ekf&), the same for all.
   template <class F>
@@ -63,12 +67,20 @@ class HeadingBank {
     return outcomes[best_];
   }
 
+  /// Sets another filter beside the others, of which the lightest goes when there are too many:
+  /// later measurements tell which is right, and until then covariance() spans them.
+  /// @param odds  of it to best(), > 0
+  void challenge(const Ekf& rival, double odds, std::size_t max_count = kMaxRivals);
+
   bool collapsed() const { return count_ == 1; }
   std::size_t count() const { return count_; }
 
   /// The heaviest member.
   const Ekf& best() const { return *members_[best_]; }
   Ekf& best() { return *members_[best_]; }
+
+  /// The one that takes its IMU for the noisiest.
+  const Ekf& most_doubting() const;
 
   /// Probability of best(), 0 to 1.
   double best_weight() const;
@@ -90,6 +102,7 @@ class HeadingBank {
 
   void weigh(const Outcomes& outcomes);
   double evidence_weight(const UpdateOutcome& outcome);
+  std::size_t lightest_but_best() const;
   void normalize();
   void merge();
   void drop(std::size_t k);

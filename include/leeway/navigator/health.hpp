@@ -11,7 +11,7 @@ namespace leeway {
 struct Health {
   enum class State : std::uint8_t {
     kAligning,      ///< no solution yet
-    kHeadingOpen,   ///< several headings are possible: sigmas span them all
+    kHeadingOpen,   ///< several states are possible, of heading mostly: sigmas span them all
     kAligned,       ///< as it should be
     kCoasting,      ///< no fix was fused for longer than 2 s
     kGating,        ///< fixes come, and are refused
@@ -27,13 +27,14 @@ struct Health {
   double optimistic_by{1.0};         ///< square root of the larger of them, at least 1
   double position_sigma_scale{1.0};  ///< what the receiver's deviations are multiplied by
   double velocity_sigma_scale{1.0};
+  double imu_sigma_scale{1.0};  ///< what the deviations of the IMU's noise are multiplied by
   /// Position errors repeat themselves from fix to fix while they are fused as white: sigmas are
   /// too small. To be mended by EkfConfig::gnss_correlation_s.
   bool correlated_fixes{false};
   bool mount_known{true};
   bool at_rest{false};            ///< by the detector of the vehicle aiding
   std::uint32_t repairs{0};       ///< of a covariance that was no longer positive definite
-  std::uint32_t resets{0};        ///< of position and velocity after the gate had locked out
+  std::uint32_t resets{0};        ///< refused fixes proved right: their state took over
   std::uint32_t realignments{0};  ///< of everything
 };
 

@@ -81,12 +81,14 @@ class Navigator {
  private:
   template <class Archive>
   void visit(Archive& archive) {
-    archive(timeline_, clock_, sample_, counts_);
+    archive(timeline_, clock_, sample_, newest_, carried_, counts_);
   }
 
   const NavigatorState& state() const { return timeline_.state(); }
   Verdict counted(Verdict verdict);
   Verdict take(const ImuIncrement& inc);
+  void carry_over(const ImuIncrement& inc);
+  void add_carried(ImuIncrement& inc, double dt_s);
   Verdict take(const ImuSample& sample);
   Verdict take(const GnssFix& fix);
   Verdict take(const Event& event);
@@ -95,6 +97,8 @@ class Navigator {
   Timeline timeline_;
   ImuClock clock_;
   std::optional<ImuSample> sample_{};
+  std::optional<ImuIncrement> newest_{};
+  std::optional<ImuIncrement> carried_{};  // waits for the next one
   std::array<std::uint64_t, kVerdicts> counts_{};
 };
 

@@ -8,6 +8,7 @@
 
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/alignment.hpp"
+#include "leeway/navigator/fix_screen.hpp"
 #include "leeway/navigator/gate_recovery.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/health.hpp"
@@ -56,14 +57,16 @@ class NavigatorState {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_, last_update_,
-            last_fused_, gate_recovery_, repairs_, resets_, realignments_);
+    archive(screen_, aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_,
+            last_update_, last_fused_, gate_recovery_, heading_doubted_, repairs_, resets_,
+            realignments_);
     archive.optional(bank_, any_bank());
   }
 
  private:
   HeadingBank any_bank() const;
   Verdict take(const GnssFix& fix);
+  Verdict use(const GnssFix& fix);
   template <AidingReading R>
   Verdict take(const R& reading);
   void align(const GnssFix& fix);
@@ -71,12 +74,17 @@ class NavigatorState {
   void begin_vehicle();
   void find_mount();
   void open_heading();
-  Verdict settle(const GnssFix& fix);
+  Verdict settle(const GnssFix& fix, bool is_explained);
   void learn_noise(const GnssFix& fix);
-  Verdict recover(const GnssFix& fix);
+  void challenge(const GnssFix& fix, double odds);
+  bool doubt_heading(Ekf restarted, const Ekf& doubting);
+  void learn_imu_noise(const GnssFix& fix);
+  bool moves() const;
+  bool motion_hides_heading(Time t) const;
   void realign();
 
   NavigatorConfig config_;
+  FixScreen screen_{};
   Aligner aligner_;
   VehicleAiding aiding_;
   MountEstimator mount_{};
@@ -86,7 +94,8 @@ class NavigatorState {
   std::optional<HeadingBank> bank_{};
   UpdateOutcome last_update_{};
   std::optional<Time> last_fused_{};  // fix
-  GateRecovery gate_recovery_{};
+  GateRecovery gate_recovery_;
+  std::optional<Time> heading_doubted_{};
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};
   std::uint32_t realignments_{0};

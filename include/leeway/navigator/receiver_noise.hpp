@@ -12,7 +12,7 @@ namespace leeway {
 
 /// A factor on the standard deviations that a receiver claims, learned from how much the
 /// innovations change from one fix to the next: that is its noise, while what they have in common
-/// is an error that lasts, the receiver's or the filter's. Up to 10 when the receiver is
+/// is an error that lasts, the receiver's or the filter's. Up to 1000 when the receiver is
 /// over-confident; within a band around 1 the claim is left alone. Source:
 /// docs/theory/navigator/receiver_noise.md.
 class ReceiverNoise {
@@ -46,7 +46,7 @@ class ReceiverNoise {
   template <class Archive>
   void visit(Archive& archive) {
     archive(sigma_scale_, nis_ratio_, change_ratio_, nis_count_, change_count_, previous_,
-            previous_innovation_);
+            previous_innovation_, surprises_);
   }
 
  private:
@@ -57,6 +57,7 @@ class ReceiverNoise {
   std::int64_t nis_count_{0};
   std::int64_t change_count_{0};
   std::optional<Time> previous_{};
+  std::int64_t surprises_{0};  // changes in a row that are far beyond the claim
   Eigen::Vector3d previous_innovation_{Eigen::Vector3d::Zero()};
 };
 

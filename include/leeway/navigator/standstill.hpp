@@ -21,7 +21,8 @@ struct StandstillConfig {
   /// Largest mean acceleration, two sigma of the filter's attitude and bias beyond: an even
   /// slowdown is as quiet as a rest.
   double acceleration_mps2{0.2};
-  double speed_mps{0.3};  ///< largest speed, three sigma of the filter's velocity beyond
+  /// Largest speed, three sigma of the filter's velocity beyond, up to 3 m/s.
+  double speed_mps{0.3};
 
   static auto visit(auto& c, const auto& visitor) {
     return visitor(Field{"gyro_std_radps", c.gyro_std_radps, kPositive},
@@ -74,6 +75,10 @@ class StandstillDetector {
   /// @param filter  at the end of the block
   /// @returns whether the vehicle has stood still over this block and the one before.
   bool push(const ImuBlock& block, const Ekf& filter);
+
+  /// Whether the horizontal acceleration over a block is no larger than its own error may be, which
+  /// is that of tilt and accelerometer bias together: motion that tells nothing of the heading.
+  bool is_even(const ImuBlock& block, const Ekf& filter) const;
 
   /// Names every member that changes, for a snapshot.
   template <class Archive>

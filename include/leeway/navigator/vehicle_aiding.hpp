@@ -6,6 +6,7 @@
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/standstill.hpp"
+#include "leeway/navigator/vehicle_kind.hpp"
 
 namespace leeway {
 
@@ -13,6 +14,7 @@ namespace leeway {
 /// stand for errors that last, fused twice a second as if they were white: they are larger than
 /// what the innovations show (docs/theory/navigator/vehicle_aiding.md).
 struct VehicleConfig {
+  VehicleKind kind{VehicleKind::kNone};
   bool zero_velocity{false};
   bool zero_angular_rate{false};
   bool non_holonomic{false};
@@ -39,11 +41,14 @@ struct VehicleConfig {
   /// there are any.
   static VehicleConfig car();
 
+  /// The set for a vehicle of this kind. Constraints are known for a car alone.
+  static VehicleConfig of(VehicleKind kind);
+
   /// Whether a part that is on depends on the vehicle's parameters.
   bool uses_parameters() const { return non_holonomic || odometer || barometer; }
 
   static auto visit(auto& c, const auto& visitor) {
-    return visitor(Field{"zero_velocity", c.zero_velocity},
+    return visitor(Field{"kind", c.kind}, Field{"zero_velocity", c.zero_velocity},
                    Field{"zero_angular_rate", c.zero_angular_rate},
                    Field{"non_holonomic", c.non_holonomic}, Field{"odometer", c.odometer},
                    Field{"barometer", c.barometer}, Field{"standstill", c.standstill},
@@ -82,10 +87,13 @@ class VehicleAiding {
 
   bool at_rest() const { return at_rest_; }
 
+  /// How long the horizontal acceleration has been no more than its own uncertainty, s.
+  double even_motion_s() const { return even_motion_s_; }
+
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(blocks_, standstill_, at_rest_);
+    archive(blocks_, standstill_, at_rest_, even_motion_s_);
   }
 
  private:
@@ -97,6 +105,7 @@ class VehicleAiding {
   ImuBlocks blocks_{};
   StandstillDetector standstill_;
   bool at_rest_{false};
+  double even_motion_s_{0.0};
 };
 
 }  // namespace leeway

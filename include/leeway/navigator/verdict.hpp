@@ -19,7 +19,8 @@ enum class Verdict : std::uint8_t {
   kReset,        ///< the gate had locked out fixes that agree: position and velocity begin anew
   kGap,          ///< IMU data was missing for longer than max_gap_s: it was bridged
   kLate,         ///< older than what is kept to go back to
-  kDuplicate,    ///< same time and kind as one before
+  kDuplicate,    ///< same time and kind as one before; an increment is added to the next one
+  kRepeated,     ///< a fix equal to the one before to the last bit, while the vehicle moves
   kOutOfOrder,   ///< IMU data older than the newest; measurements may come in any order
   kFuture,       ///< further ahead of the IMU data than max_ahead_s
   kClockJump,    ///< IMU: the clock has jumped for good; the navigator aligns anew
@@ -30,8 +31,9 @@ enum class Verdict : std::uint8_t {
 };
 constexpr auto names(Verdict) {
   return std::array{"accepted",   "aligning", "fused",      "gated",        "reset",
-                    "gap",        "late",     "duplicate",  "out_of_order", "future",
-                    "clock_jump", "unused",   "not_finite", "implausible",  "overflow"};
+                    "gap",        "late",     "duplicate",  "repeated",     "out_of_order",
+                    "future",     "clock_jump", "unused",   "not_finite",   "implausible",
+                    "overflow"};
 }
 
 inline constexpr std::size_t kVerdicts = kAll<Verdict>.size();

@@ -23,6 +23,17 @@ struct ImuRow {
   bool is_rate{false};
 };
 
+/// Increments: rotation and velocity that happened. A lost rate costs little.
+inline bool carries_over(const ImuRow& row, const ImuRow& before) {
+  return !row.is_rate && (row.angular != before.angular || row.linear != before.linear);
+}
+
+inline void add_to(ImuRow& row, const ImuRow& carried) {
+  row.angular += carried.angular;
+  row.linear += carried.linear;
+  if (row.dt_s > 0.0) row.dt_s += carried.dt_s;
+}
+
 using ImuLayout = LogLayout<ImuRow>;
 
 ImuLayout imu_csv_rates();

@@ -126,10 +126,12 @@ void add_filter_options(CLI::App& app, FuseOptions& options) {
 }
 
 void add_vehicle_options(CLI::App& app, FuseVehicle& vehicle) {
-  add_default_option(app, "--vehicle", vehicle.name,
-                     "car: use that it stands still at times and never slides sideways; without "
-                     "--mount the mount is estimated")
-      ->check(CLI::IsMember({"none", "car"}));
+  app.add_option("--vehicle", vehicle.kind,
+                 "what the vehicle can do. car: it stands still at times and never slides "
+                 "sideways; without --mount the mount is estimated. walker, multirotor, boat: the "
+                 "course is not the heading, which is left open until the motion shows it")
+      ->transform(named<VehicleKind>())
+      ->default_str(std::string(name(vehicle.kind)));
   std::vector<std::string> part_names;
   for (const VehiclePart& part : kVehicleParts) part_names.emplace_back(part.name);
   app.add_option("--without", vehicle.without, "switch a part of --vehicle off; may be repeated")

@@ -95,8 +95,8 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
 }  // namespace
 
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
-  if (vehicle.name == "none") return {};
-  VehicleConfig config = VehicleConfig::car();
+  VehicleConfig config = VehicleConfig::of(vehicle.kind);
+  if (vehicle.kind != VehicleKind::kCar) return config;
   for (const VehiclePart& part : kVehicleParts) {
     config.*part.is_on =
         std::none_of(vehicle.without.begin(), vehicle.without.end(),
@@ -121,7 +121,7 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
   const bool asks_for_a_vehicle =
       !options.vehicle.without.empty() || logs.files.aidings != sim::AidingLogs{};
-  if (options.vehicle.name == "none" && asks_for_a_vehicle) {
+  if (options.vehicle.kind != VehicleKind::kCar && asks_for_a_vehicle) {
     std::string names = "--without";
     for (const Aiding& a : kAidings) {
       names += (&a == &kAidings.back() ? " and --" : ", --") + std::string(a.name);
@@ -136,7 +136,8 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(logs, folder));
   for (FuseJob& job : jobs) {
     const FuseVehicle& vehicle = options.vehicle;
-    job.estimates_mount = vehicle.estimate_mount || (vehicle.name != "none" && !job.mount_rpy_deg);
+    job.estimates_mount =
+        vehicle.estimate_mount || (vehicle.kind == VehicleKind::kCar && !job.mount_rpy_deg);
     if (!job.estimates_mount) {
       job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
     }

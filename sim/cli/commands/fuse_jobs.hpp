@@ -20,7 +20,7 @@ struct FuseLogs {
 
 /// Aiding by what is known of the vehicle.
 struct FuseVehicle {
-  std::string name{"none"};
+  VehicleKind kind{VehicleKind::kNone};
   std::vector<std::string> without{};
   bool estimate_mount{false};
 };

@@ -18,6 +18,7 @@ Json log_json(const FuseLog& log) {
           {"format", log.format},
           {"lines", log.summary.lines},
           {"records", log.summary.records},
+          {"carried_over", log.summary.carried_over},
           {"damaged_lines", log.summary.damaged_lines()},
           {"damaged", damaged},
           {"messages", log.summary.messages},
@@ -37,6 +38,7 @@ Json health_json(const sim::ReplayResult& r) {
           {"velocity_nis_ratio", h.velocity_nis_ratio},
           {"position_sigma_scale", h.position_sigma_scale},
           {"velocity_sigma_scale", h.velocity_sigma_scale},
+          {"imu_sigma_scale", h.imu_sigma_scale},
           {"repairs", h.repairs},
           {"resets", h.resets},
           {"realignments", h.realignments},
@@ -120,7 +122,7 @@ Json input_json(const FuseOptions& o, const std::string& imu_name) {
     for (const auto& folder : o.logs.drives) input["drives"].push_back(folder.string());
   }
   const Eigen::Vector2d scale = o.logs.gnss_sigma_scale.value_or(Eigen::Vector2d::Ones());
-  input.update({{"vehicle", o.vehicle.name},
+  input.update({{"vehicle", name(o.vehicle.kind)},
                 {"without", o.vehicle.without},
                 {"estimate_mount", o.vehicle.estimate_mount},
                 {"position_lag_s", o.timing.position_lag_s},

@@ -133,6 +133,11 @@ void print_outages(const std::vector<FuseJob>& jobs) {
 
 void warn_of(const FuseLog& log) {
   const LogSummary& summary = log.summary;
+  if (summary.carried_over > 0) {
+    spdlog::warn("{} log {}: {} of {} lines repeat the time of the line before: their increments "
+                 "were added to the next one",
+                 log.title, log.path.string(), summary.carried_over, summary.lines);
+  }
   if (summary.damaged_lines() > 0) {
     spdlog::warn("{} log {}: {} of {} lines are damaged and not used", log.title, log.path.string(),
                  summary.damaged_lines(), summary.lines);

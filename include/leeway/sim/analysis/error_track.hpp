@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "leeway/covariance/transition.hpp"
+#include "leeway/model/process_noise.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
 
 namespace leeway::sim {
@@ -26,6 +27,7 @@ struct Leg {
   double end_s{};
   Transition Phi{};
   ParameterMatrix B{ParameterMatrix::Zero()};  ///< stays zero unless the track has parameters
+  MeanMotion motion{};
 };
 
 /// Options of an error track.
@@ -66,6 +68,7 @@ class ErrorTrack {
     Eigen::Matrix3d gravity_gradient_e;
     Eigen::Vector3d f_b_mps2;
     Eigen::Vector3d omega_ib_b_radps;
+    Eigen::Vector3d acceleration_e_mps2;
   };
 
   void extend(Leg& leg, const Piece& piece, double dt_s) const;
@@ -77,6 +80,7 @@ class ErrorTrack {
   std::vector<Piece> pieces_{};
   std::vector<Transition> Phi_{};     // of whole steps
   std::vector<ParameterMatrix> B_{};  // likewise
+  std::vector<MeanMotion> motion_{};
 };
 
 }  // namespace leeway::sim

@@ -1,0 +1,40 @@
+/// @file
+/// What shows on a fix by itself that it is none: no position, or the one before once more.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "leeway/sensors/gnss_fix.hpp"
+
+namespace leeway {
+
+/// Looks at fixes before a filter does. No heap, no exceptions.
+class FixScreen {
+ public:
+  enum class Finding : std::uint8_t {
+    kNews,
+    kRepeated,  ///< equal to the one before to the last bit, while the vehicle moves
+    kNone,      ///< 0, 0: what drivers send in place of a position
+  };
+
+  /// @param moves  whether the vehicle moves, by its filter; a moving receiver never gives the same
+  /// numbers twice
+  Finding judge(const GnssFix& fix, bool moves);
+
+  /// Names every member that changes, for a snapshot.
+  template <class Archive>
+  void visit(Archive& archive) {
+    archive(position_, velocity_);
+  }
+
+ private:
+  std::optional<Eigen::Vector3d> position_{};  // of the newest news, by part
+  std::optional<Eigen::Vector3d> velocity_{};
+};
+
+/// The fix with no sigma below 1 mm and 1 mm/s in any direction: no receiver does better. A smaller
+/// claim is a slip of the log, and would outweigh everything else.
+GnssFix with_floor(const GnssFix& fix);
+
+}  // namespace leeway
