@@ -1,0 +1,52 @@
+/// @file
+/// A drive of a regime with its truth, and a navigator that is fed with its inputs and compared
+/// with it, ten times a second.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/strapdown/nav_state.hpp"
+#include "sim/atlas/faults/fault.hpp"
+#include "sim/atlas/faults/regime.hpp"
+
+namespace leeway::sim {
+
+inline constexpr double kEpochS = 0.1;  ///< between comparisons
+
+struct FaultDrive {
+  std::vector<NavState> truth{};  ///< at k kEpochS, from 0 on
+  FaultInputs inputs{};           ///< as the sensors deliver them, without any fault
+};
+
+/// Seed 1.
+FaultDrive drive_of(const Regime& regime, const Trajectory& trajectory, double duration_s);
+
+/// What a navigator is like at one time.
+struct FaultEpoch {
+  double t_s{};
+  bool has_solution{false};
+  bool finite{true};         ///< of the solution, sigmas included
+  bool stands_still{false};  ///< the time of the solution is that of the epoch before
+  double horizontal_m{0.0};  ///< error
+  /// The largest of the errors over their claimed sigmas: north and east, velocity, and heading.
+  /// The last counts for little where the claim is tens of degrees: an error is at most 180.
+  double sigmas{0.0};
+  Health::State state{};
+
+  bool is_beyond() const { return has_solution && (!finite || sigmas > 5.0); }
+  bool is_told() const { return stands_still || state != Health::State::kAligned; }
+};
+
+/// Feeds a navigator with all inputs by their time of arrival, and shows what it is like after each
+/// epoch up to end_s.
+void run_navigator(Navigator& navigator, FaultInputs inputs, const std::vector<NavState>& truth,
+                   double end_s, const std::function<void(const FaultEpoch&)>& observe);
+
+/// Starts at the truth but for a turn about the vertical, with 3 deg of claimed sigma.
+void start_turned(Navigator& navigator, const Regime& regime, const NavState& truth,
+                  double heading_error_rad);
+
+}  // namespace leeway::sim
