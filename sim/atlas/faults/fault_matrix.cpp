@@ -30,15 +30,17 @@ double longest_run_s(const Regime& regime) {
 struct RegimeRun {
   FaultDrive drive{};
   FaultFloor floor{};
+  std::vector<Health::State> states{};  // by epoch, without a fault
 };
 
-FaultFloor floor_of(const Regime& regime, const FaultDrive& drive) {
-  FaultFloor floor;
+void run_without_fault(const Regime& regime, RegimeRun& run) {
+  FaultFloor& floor = run.floor;
   double square_m2 = 0.0;
   double epochs = 0.0;
   Navigator navigator(regime.config);
-  run_navigator(navigator, drive.inputs, drive.truth, std::numeric_limits<double>::infinity(),
-                [&](const FaultEpoch& epoch) {
+  run_navigator(navigator, run.drive.inputs, run.drive.truth,
+                std::numeric_limits<double>::infinity(), [&](const FaultEpoch& epoch) {
+                  run.states.push_back(epoch.state);
                   if (epoch.state != Health::State::kAligned) floor.aligned_s = epoch.t_s;
                   if (epoch.t_s <= regime.settled_s) return;
                   square_m2 += epoch.horizontal_m * epoch.horizontal_m;
@@ -46,30 +48,33 @@ FaultFloor floor_of(const Regime& regime, const FaultDrive& drive) {
                   if (epoch.is_beyond()) floor.beyond_s += kEpochS;
                 });
   floor.horizontal_m = std::sqrt(square_m2 / epochs);
-  return floor;
+  if (run.states.back() != Health::State::kAligned) {
+    floor.aligned_s = std::numeric_limits<double>::infinity();
+  }
 }
 
 RegimeRun regime_run(const Regime& regime) {
   RegimeRun run;
   run.drive = drive_of(regime, regime.trajectory, longest_run_s(regime));
-  run.floor = floor_of(regime, run.drive);
+  run_without_fault(regime, run);
   return run;
 }
 
 /// Sums up the epochs of a cell.
 class CellScore {
  public:
-  CellScore(const FaultWindow& window, double floor_m)
-      : window_(window), floor_m_(floor_m), bad_s_(window.to_s) {}
+  CellScore(const FaultWindow& window, const Regime& regime, const RegimeRun& shared)
+      : window_(window), settled_s_(regime.settled_s), shared_(shared), bad_s_(window.to_s) {}
 
   void operator()(const FaultEpoch& epoch) {
     end_s_ = epoch.t_s;
+    const std::size_t k = epochs_++;
     if (epoch.t_s <= window_.from_s) return;
     cell.finite = cell.finite && epoch.finite;
-    if (epoch.is_beyond()) (epoch.is_told() ? cell.told_s : cell.silent_s) += kEpochS;
+    if (epoch.is_beyond()) (tells(epoch, k) ? cell.told_s : cell.silent_s) += kEpochS;
     if (window_.has(epoch.t_s)) cell.worst_m = std::max(cell.worst_m, epoch.horizontal_m);
     const bool good = epoch.has_solution && epoch.finite && !epoch.is_beyond() &&
-                      epoch.horizontal_m <= kFloors * floor_m_;
+                      epoch.horizontal_m <= kFloors * shared_.floor.horizontal_m;
     if (!good && epoch.t_s > window_.to_s) bad_s_ = epoch.t_s;
   }
 
@@ -81,8 +86,16 @@ class CellScore {
   FaultCell cell{};
 
  private:
+  bool tells(const FaultEpoch& epoch, std::size_t k) const {
+    if (epoch.stands_still) return true;
+    if (epoch.state == Health::State::kAligned) return false;
+    return epoch.t_s <= settled_s_ || epoch.state != shared_.states[k];
+  }
+
   FaultWindow window_;
-  double floor_m_;
+  double settled_s_;
+  const RegimeRun& shared_;
+  std::size_t epochs_{0};
   double bad_s_;
   double end_s_{0.0};
 };
@@ -100,7 +113,7 @@ void run_cell(FaultCell& cell, const Fault& fault, const Regime& regime, const R
   if (fault.heading_error_rad != 0.0) {
     start_turned(navigator, regime, drive.truth.front(), fault.heading_error_rad);
   }
-  CellScore score(window, shared.floor.horizontal_m);
+  CellScore score(window, regime, shared);
   score.cell = cell;
   run_navigator(navigator, std::move(inputs), drive.truth, end_s, std::ref(score));
   cell = score.cell;

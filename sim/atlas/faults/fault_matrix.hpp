@@ -20,7 +20,9 @@ inline constexpr double kBearableSilenceS = 2.0;
 struct FaultCell {
   std::size_t fault{};   ///< its place in faults()
   std::size_t regime{};  ///< in regimes()
-  double told_s{0.0};    ///< wrong, and health is not aligned, or the solution's time stands still
+  /// Wrong, and health is not aligned, or the time of the solution stands still. A state that the
+  /// navigator would also have without the fault, once it has settled, tells nothing.
+  double told_s{0.0};
   double silent_s{0.0};  ///< wrong, and nothing says so
   bool finite{true};
   double worst_m{0.0};  ///< horizontal error during the fault
@@ -33,7 +35,7 @@ struct FaultCell {
 
 /// What a navigator does without a fault.
 struct FaultFloor {
-  double aligned_s{};     ///< from here on it is aligned for good
+  double aligned_s{};     ///< from here on it is aligned for good; infinite: never
   double horizontal_m{};  ///< RMS error once it has settled
   double beyond_s{};      ///< time beyond 5 sigma once it has settled
 };

@@ -37,7 +37,6 @@ struct FaultEpoch {
   Health::State state{};
 
   bool is_beyond() const { return has_solution && (!finite || sigmas > 5.0); }
-  bool is_told() const { return stands_still || state != Health::State::kAligned; }
 };
 
 /// Feeds a navigator with all inputs by their time of arrival, and shows what it is like after each

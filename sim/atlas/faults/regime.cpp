@@ -1,11 +1,13 @@
 #include "sim/atlas/faults/regime.hpp"
 
+#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/motion/waypoints.hpp"
+#include "sim/motion/smooth_step.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -148,8 +150,10 @@ std::vector<Regime> made_regimes() {
   all.push_back(free_regime("multirotor", VehicleKind::kMultirotor,
                             trajectory_of("multirotor", multirotor_motion), 8.0));
   all.push_back(free_regime("aircraft", VehicleKind::kAircraft, aircraft_trajectory(), 40.0));
-  all.push_back(
-      free_regime("walker", VehicleKind::kWalker, trajectory_of("walker", walker_motion), 17.0));
+  // A walker that has not stood still is not levelled.
+  const Trajectory walk = trajectory_of("walker", walker_motion);
+  all.push_back(free_regime("walker", VehicleKind::kWalker, walk, 17.0));
+  all.back().trajectory = paced_at_first(walk, 0.0, 0.0, 5.0);
   return all;
 }
 
@@ -177,6 +181,22 @@ Trajectory rescheduled(const Trajectory& trajectory, std::function<Jet(double t_
     return m;
   };
   return result;
+}
+
+Trajectory paced_at_first(const Trajectory& trajectory, double start_s, double pace,
+                          double from_s) {
+  constexpr double kChangeS = 10.0;
+  return rescheduled(trajectory, [=](double t_s) -> Jet {
+    const Jet t = time_jet(t_s);
+    if (t_s < from_s) return start_s + pace * t;
+    const double reached_s = start_s + pace * from_s;
+    const Jet x = (t - from_s) * (1.0 / kChangeS);
+    if (t_s < from_s + kChangeS) {
+      return reached_s + pace * (t - from_s) +
+             (1.0 - pace) * kChangeS * smooth_step_integral(x);
+    }
+    return reached_s + 0.5 * (1.0 + pace) * kChangeS + (t - from_s - kChangeS);
+  });
 }
 
 }  // namespace leeway::sim

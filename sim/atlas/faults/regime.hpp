@@ -3,6 +3,8 @@
 /// told.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,5 +38,10 @@ inline constexpr std::size_t kCarRegime = 1;  ///< of VehicleConfig::car()
 /// The same way, gone through as `clock` tells: the time on the way as a function of time. What
 /// goes backwards in time backs.
 Trajectory rescheduled(const Trajectory& trajectory, std::function<Jet(double t_s)> clock);
+
+/// The same way from start_s on it: at `pace` of its speed first, and from from_s on, within 10 s,
+/// at its own. Pace 0 stands, -1 backs.
+Trajectory paced_at_first(const Trajectory& trajectory, double start_s, double pace,
+                          double from_s);
 
 }  // namespace leeway::sim

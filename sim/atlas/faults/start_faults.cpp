@@ -1,6 +1,4 @@
-#include "leeway/sim/motion/trajectories.hpp"
 #include "sim/atlas/faults/fault.hpp"
-#include "sim/motion/smooth_step.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -24,22 +22,6 @@ Fault moving(std::string name, std::function<Trajectory(const Regime&)> motion) 
 /// Not at the begin of the way, but here on it.
 Trajectory from_here(const Trajectory& way, double start_s) {
   return rescheduled(way, [=](double t_s) { return time_jet(t_s) + start_s; });
-}
-
-/// Along the way at `pace` (of its time), and from from_s on, within 10 s, at its own.
-Trajectory at_first(const Trajectory& way, double start_s, double pace, double from_s) {
-  constexpr double kChangeS = 10.0;
-  return rescheduled(way, [=](double t_s) -> Jet {
-    const Jet t = time_jet(t_s);
-    if (t_s < from_s) return start_s + pace * t;
-    const double reached_s = start_s + pace * from_s;
-    const Jet x = (t - from_s) * (1.0 / kChangeS);
-    if (t_s < from_s + kChangeS) {
-      return reached_s + pace * (t - from_s) +
-             (1.0 - pace) * kChangeS * smooth_step_integral(x);
-    }
-    return reached_s + 0.5 * (1.0 + pace) * kChangeS + (t - from_s - kChangeS);
-  });
 }
 
 Trajectory sideways(const Regime& regime) {
@@ -71,9 +53,9 @@ std::vector<Fault> start_faults() {
       moving("starts turning",
              [](const Regime& r) { return from_here(r.trajectory, r.turns_at_s); }),
       moving("starts backing",
-             [](const Regime& r) { return at_first(r.trajectory, 60.0, -1.0, 20.0); }),
+             [](const Regime& r) { return paced_at_first(r.trajectory, 60.0, -1.0, 20.0); }),
       moving("starts standing or hovering",
-             [](const Regime& r) { return at_first(r.trajectory, 25.0, 0.0, 25.0); }),
+             [](const Regime& r) { return paced_at_first(r.trajectory, 25.0, 0.0, 25.0); }),
       drifts,
       blind_start("no fix at first",
                   [](FaultInputs& inputs, const FaultWindow& window) {

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
 #include <vector>
 
 #include "sim/cli/output.hpp"
@@ -72,7 +73,7 @@ std::string floors_markdown(const sim::FaultMatrix& matrix) {
   std::vector<std::string> rms{"horizontal RMS, m"};
   std::vector<std::string> beyond{"beyond 5 sigma, s"};
   for (const sim::FaultFloor& floor : matrix.floors) {
-    aligned.push_back(number(floor.aligned_s, 0));
+    aligned.push_back(std::isfinite(floor.aligned_s) ? number(floor.aligned_s, 0) : "never");
     rms.push_back(number(floor.horizontal_m, 2));
     beyond.push_back(number(floor.beyond_s, 1));
   }
@@ -168,7 +169,8 @@ std::string faults_markdown(const sim::FaultMatrix& matrix) {
          "position, velocity or heading.\n\n"
          "| word | meaning |\n|---|---|\n"
          "| ok | wrong for 2 s at most |\n"
-         "| said | wrong, and health is not `aligned`, or the time of the solution stands still |\n"
+         "| said | wrong, and health is not `aligned`, or the time of the solution stands still; a "
+         "state that it has without a fault, too, tells nothing |\n"
          "| SILENT n s | wrong for n s, more than 2, and nothing says so |\n"
          "| silent n s | the same, where no navigator could tell: see the end of this page |\n"
          "| lost | not within 5 sigma and 3 floors (RMS without a fault) for good, 150 s after |\n\n" +
