@@ -54,7 +54,11 @@ struct Fault {
   std::function<Trajectory(const Regime&)> motion{};  ///< in place of the regime's
   /// Started at the truth with a heading that is off by so much, in place of aligning; 0: aligns.
   double heading_error_rad{0.0};
-  bool needs_free_course{false};  ///< no fault of what goes where it points, but another motion
+  std::vector<VehicleKind> cannot_befall{};  ///< vehicles that do not move like that
+
+  bool can_befall(VehicleKind kind) const {
+    return std::find(cannot_befall.begin(), cannot_befall.end(), kind) == cannot_befall.end();
+  }
 };
 
 /// Calls f(input, seconds since the fault began) on the inputs that arrive in the window.

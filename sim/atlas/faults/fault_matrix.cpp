@@ -38,8 +38,8 @@ void run_without_fault(const Regime& regime, RegimeRun& run) {
   double square_m2 = 0.0;
   double epochs = 0.0;
   Navigator navigator(regime.config);
-  run_navigator(navigator, run.drive.inputs, run.drive.truth,
-                std::numeric_limits<double>::infinity(), [&](const FaultEpoch& epoch) {
+  run_navigator(navigator, run.drive.inputs, run.drive, std::numeric_limits<double>::infinity(),
+                [&](const FaultEpoch& epoch) {
                   run.states.push_back(epoch.state);
                   if (epoch.state != Health::State::kAligned) floor.aligned_s = epoch.t_s;
                   if (epoch.t_s <= regime.settled_s) return;
@@ -103,8 +103,9 @@ class CellScore {
 void run_cell(FaultCell& cell, const Fault& fault, const Regime& regime, const RegimeRun& shared) {
   const FaultWindow window = window_of(fault, regime);
   const double end_s = window.to_s + kAfterS;
-  const FaultDrive drive =
-      fault.motion ? drive_of(regime, fault.motion(regime), end_s) : shared.drive;
+  std::optional<FaultDrive> own;
+  if (fault.motion) own = drive_of(regime, fault.motion(regime), end_s);
+  const FaultDrive& drive = own ? *own : shared.drive;
   FaultInputs inputs = drive.inputs;
   if (fault.damage) {
     fault.damage(inputs, {window.from_s, fault.lasts ? 2.0 * end_s : window.to_s});
@@ -115,7 +116,7 @@ void run_cell(FaultCell& cell, const Fault& fault, const Regime& regime, const R
   }
   CellScore score(window, regime, shared);
   score.cell = cell;
-  run_navigator(navigator, std::move(inputs), drive.truth, end_s, std::ref(score));
+  run_navigator(navigator, std::move(inputs), drive, end_s, std::ref(score));
   cell = score.cell;
   if (!fault.lasts) cell.recovery_s = score.recovery_s();
 }
@@ -130,7 +131,7 @@ std::vector<FaultCell> cells_to_run(bool brief) {
   std::vector<FaultCell> cells;
   for (std::size_t f = 0; f < faults().size(); ++f) {
     for (std::size_t r = 0; r < regimes().size(); ++r) {
-      if (faults()[f].needs_free_course && regimes()[r].follows_its_nose) continue;
+      if (!faults()[f].can_befall(regimes()[r].config.vehicle.kind)) continue;
       if (brief && r != kCarRegime && !is_brief(faults()[f])) continue;
       cells.push_back({.fault = f, .regime = r});
     }

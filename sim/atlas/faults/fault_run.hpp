@@ -17,6 +17,7 @@ namespace leeway::sim {
 inline constexpr double kEpochS = 0.1;  ///< between comparisons
 
 struct FaultDrive {
+  Trajectory trajectory{};
   std::vector<NavState> truth{};  ///< at k kEpochS, from 0 on
   FaultInputs inputs{};           ///< as the sensors deliver them, without any fault
 };
@@ -40,9 +41,11 @@ struct FaultEpoch {
 };
 
 /// Feeds a navigator with all inputs by their time of arrival, and shows what it is like after each
-/// epoch up to end_s.
-void run_navigator(Navigator& navigator, FaultInputs inputs, const std::vector<NavState>& truth,
-                   double end_s, const std::function<void(const FaultEpoch&)>& observe);
+/// epoch up to end_s. Where clocks disagree, a solution is right that is right by one of them: now,
+/// or at its own time.
+/// @param inputs  those of the drive, spoiled
+void run_navigator(Navigator& navigator, FaultInputs inputs, const FaultDrive& drive, double end_s,
+                   const std::function<void(const FaultEpoch&)>& observe);
 
 /// Starts at the truth but for a turn about the vertical, with 3 deg of claimed sigma.
 void start_turned(Navigator& navigator, const Regime& regime, const NavState& truth,

@@ -129,11 +129,10 @@ GnssErrorModel rtk_receiver() {
   return gnss;
 }
 
-Regime free_regime(const char* name, VehicleKind kind, Trajectory trajectory, double turns_at_s) {
+Regime regime_of(const char* name, VehicleKind kind, Trajectory trajectory, double turns_at_s) {
   Regime regime{.name = name, .trajectory = std::move(trajectory), .gnss = code_receiver()};
   regime.config.vehicle = VehicleConfig::of(kind);
   regime.turns_at_s = turns_at_s;
-  regime.follows_its_nose = limits_of(kind).goes_where_it_points;
   return regime;
 }
 
@@ -141,18 +140,18 @@ std::vector<Regime> made_regimes() {
   const Trajectory car = car_trajectory();
   constexpr double kCarTurnS = 70.0;
   std::vector<Regime> all;
-  all.push_back(free_regime("default", VehicleKind::kNone, car, kCarTurnS));
-  all.push_back(free_regime("car", VehicleKind::kCar, car, kCarTurnS));
+  all.push_back(regime_of("default", VehicleKind::kNone, car, kCarTurnS));
+  all.push_back(regime_of("car", VehicleKind::kCar, car, kCarTurnS));
   all.push_back(all.back());
   all.back().name = "car RTK";
   all.back().gnss = rtk_receiver();
-  all.push_back(free_regime("ship", VehicleKind::kBoat, trajectory_of("ship", ship_motion), 50.0));
-  all.push_back(free_regime("multirotor", VehicleKind::kMultirotor,
+  all.push_back(regime_of("ship", VehicleKind::kBoat, trajectory_of("ship", ship_motion), 50.0));
+  all.push_back(regime_of("multirotor", VehicleKind::kMultirotor,
                             trajectory_of("multirotor", multirotor_motion), 8.0));
-  all.push_back(free_regime("aircraft", VehicleKind::kAircraft, aircraft_trajectory(), 40.0));
+  all.push_back(regime_of("aircraft", VehicleKind::kAircraft, aircraft_trajectory(), 40.0));
   // A walker that has not stood still is not levelled.
   const Trajectory walk = trajectory_of("walker", walker_motion);
-  all.push_back(free_regime("walker", VehicleKind::kWalker, walk, 17.0));
+  all.push_back(regime_of("walker", VehicleKind::kWalker, walk, 17.0));
   all.back().trajectory = paced_at_first(walk, 0.0, 0.0, 5.0);
   return all;
 }

@@ -25,9 +25,6 @@ struct Regime {
   NavigatorConfig config{};
   double settled_s{60.0};  ///< from the start, when the navigator has found itself
   double turns_at_s{};     ///< somewhere in a turn
-
-  /// Whether the course over ground is the heading, whatever the navigator is told.
-  bool follows_its_nose{true};
 };
 
 /// All regimes, in the order of the matrix. car() is the second.

@@ -95,17 +95,22 @@ std::string matrix_markdown(const sim::FaultMatrix& matrix) {
   return text;
 }
 
+/// A line of names for each reason.
 std::string unknowable_markdown() {
   std::string text;
+  std::string reason;
   for (const sim::Fault& fault : sim::faults()) {
     if (fault.unknowable.empty()) continue;
-    text += fmt::format("- **{}**: {}{}.\n", fault.name, fault.unknowable,
-                        fault.knowable_below_m == 0.0
-                            ? ""
-                            : fmt::format(", unless its 1 sigma is below {:g} m",
-                                          fault.knowable_below_m));
+    const std::string why =
+        fault.unknowable + (fault.knowable_below_m == 0.0
+                                ? ""
+                                : fmt::format(", unless its 1 sigma is below {:g} m",
+                                              fault.knowable_below_m));
+    if (why != reason && !reason.empty()) text += fmt::format(":\n  {}.\n", reason);
+    text += fmt::format("{}{}", why == reason ? ", " : "- ", fault.name);
+    reason = why;
   }
-  return text;
+  return text + fmt::format(":\n  {}.\n", reason);
 }
 
 Json cell_json(const sim::FaultCell& cell) {
@@ -169,11 +174,12 @@ std::string faults_markdown(const sim::FaultMatrix& matrix) {
          "position, velocity or heading.\n\n"
          "| word | meaning |\n|---|---|\n"
          "| ok | wrong for 2 s at most |\n"
-         "| said | wrong, and health is not `aligned`, or the time of the solution stands still; a "
-         "state that it has without a fault, too, tells nothing |\n"
+         "| said | wrong, and health is not `aligned`, or the time of the solution stands still |\n"
          "| SILENT n s | wrong for n s, more than 2, and nothing says so |\n"
          "| silent n s | the same, where no navigator could tell: see the end of this page |\n"
-         "| lost | not within 5 sigma and 3 floors (RMS without a fault) for good, 150 s after |\n\n" +
+         "| lost | not within 5 sigma and 3 floors (RMS without a fault) for good, 150 s after |\n\n"
+         "Where clocks disagree, a solution is right that is right by one of them. A state of health "
+         "that the navigator has without\na fault, too, tells nothing.\n\n" +
          summary_text(summary_of(matrix)) + "\n" + floors_markdown(matrix) +
          matrix_markdown(matrix) + "\n## What cannot be known\n\n" + unknowable_markdown();
 }
