@@ -71,7 +71,7 @@ class CellScore {
     const std::size_t k = epochs_++;
     if (epoch.t_s <= window_.from_s) return;
     cell.finite = cell.finite && epoch.finite;
-    if (epoch.is_beyond()) (tells(epoch, k) ? cell.told_s : cell.silent_s) += kEpochS;
+    if (epoch.is_beyond()) add_wrong(epoch, tells(epoch, k));
     if (window_.has(epoch.t_s)) cell.worst_m = std::max(cell.worst_m, epoch.horizontal_m);
     const bool good = epoch.has_solution && epoch.finite && !epoch.is_beyond() &&
                       epoch.horizontal_m <= kFloors * shared_.floor.horizontal_m;
@@ -90,6 +90,13 @@ class CellScore {
     if (epoch.stands_still) return true;
     if (epoch.state == Health::State::kAligned) return false;
     return epoch.t_s <= settled_s_ || epoch.state != shared_.states[k];
+  }
+
+  void add_wrong(const FaultEpoch& epoch, bool is_told) {
+    (is_told ? cell.told_s : cell.silent_s) += kEpochS;
+    for (std::size_t e = 0; e < epoch.sigmas.size() && !is_told; ++e) {
+      if (epoch.sigmas[e] > FaultEpoch::kMostSigmas) cell.silent_by_s[e] += kEpochS;
+    }
   }
 
   FaultWindow window_;

@@ -3,6 +3,7 @@
 /// and finds back.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -24,6 +25,7 @@ struct FaultCell {
   /// navigator would also have without the fault, once it has settled, tells nothing.
   double told_s{0.0};
   double silent_s{0.0};  ///< wrong, and nothing says so
+  std::array<double, 3> silent_by_s{};  ///< ... by what is wrong, a FaultError
   bool finite{true};
   double worst_m{0.0};  ///< horizontal error during the fault
   /// From the end of the fault until the error is within 5 sigma and 3 floors for good; absent when

@@ -26,12 +26,8 @@ bool is_finite(const Solution& s) {
          s.sigma_attitude_rad.allFinite();
 }
 
-struct FaultErrors {
-  double horizontal_m{};
-  double sigmas{};
-};
-
-FaultErrors errors_of(const Solution& solution, const NavState& truth) {
+/// Takes errors and sigmas against this truth.
+void set_errors(FaultEpoch& epoch, const Solution& solution, const NavState& truth) {
   const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(truth.r_e_m)).transpose();
   const Eigen::Vector2d position_n_m = (C_ne * (solution.nav.r_e_m - truth.r_e_m)).head<2>();
   const Eigen::Vector3d velocity_n_mps = C_ne * (solution.nav.v_e_mps - truth.v_e_mps);
@@ -39,23 +35,22 @@ FaultErrors errors_of(const Solution& solution, const NavState& truth) {
   const auto ratio = [](const auto& error, const auto& sigma) {
     return error.cwiseAbs().cwiseQuotient(sigma).maxCoeff();
   };
-  return {position_n_m.norm(), std::max({ratio(position_n_m, solution.sigma_position_n_m.head<2>()),
-                                         ratio(velocity_n_mps, solution.sigma_velocity_n_mps),
-                                         heading_rad / solution.sigma_attitude_rad.z()})};
+  epoch.horizontal_m = position_n_m.norm();
+  epoch.sigmas = {ratio(position_n_m, solution.sigma_position_n_m.head<2>()),
+                  ratio(velocity_n_mps, solution.sigma_velocity_n_mps),
+                  heading_rad / solution.sigma_attitude_rad.z()};
 }
 
 void compare(FaultEpoch& epoch, const Solution& solution, const FaultDrive& drive, std::size_t k) {
   epoch.finite = is_finite(solution);
   if (!epoch.finite) return;
-  FaultErrors errors = errors_of(solution, drive.truth[k]);
+  set_errors(epoch, solution, drive.truth[k]);
   const double own_s = to_seconds(solution.nav.time);
   const bool has_truth = own_s >= 0.0 && own_s <= drive.trajectory.duration_s;
-  if (!epoch.stands_still && has_truth && std::abs(own_s - epoch.t_s) > 1e-6) {
-    const FaultErrors own = errors_of(solution, truth_at(drive.trajectory, own_s).nav);
-    if (own.sigmas < errors.sigmas) errors = own;
-  }
-  epoch.horizontal_m = errors.horizontal_m;
-  epoch.sigmas = errors.sigmas;
+  if (epoch.stands_still || !has_truth || std::abs(own_s - epoch.t_s) < 1e-6) return;
+  FaultEpoch own = epoch;
+  set_errors(own, solution, truth_at(drive.trajectory, own_s).nav);
+  if (own.worst_sigmas() < epoch.worst_sigmas()) epoch = own;
 }
 
 /// Pushes what has arrived; a fix before an increment of the same time.

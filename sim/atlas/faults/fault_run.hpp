@@ -3,8 +3,9 @@
 /// with it, ten times a second.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "leeway/navigator/navigator.hpp"
@@ -25,6 +26,10 @@ struct FaultDrive {
 /// Seed 1.
 FaultDrive drive_of(const Regime& regime, const Trajectory& trajectory, double duration_s);
 
+/// What of a solution can be wrong.
+enum class FaultError { kPosition, kVelocity, kHeading };
+constexpr auto names(FaultError) { return std::array{"position", "velocity", "heading"}; }
+
 /// What a navigator is like at one time.
 struct FaultEpoch {
   double t_s{};
@@ -32,12 +37,14 @@ struct FaultEpoch {
   bool finite{true};         ///< of the solution, sigmas included
   bool stands_still{false};  ///< the time of the solution is that of the epoch before
   double horizontal_m{0.0};  ///< error
-  /// The largest of the errors over their claimed sigmas: north and east, velocity, and heading.
-  /// The last counts for little where the claim is tens of degrees: an error is at most 180.
-  double sigmas{0.0};
+  /// Errors over their claimed sigmas, by FaultError: north or east, the worst axis of velocity,
+  /// heading. The last counts for little where the claim is tens of degrees: it is at most 180.
+  std::array<double, 3> sigmas{};
   Health::State state{};
 
-  bool is_beyond() const { return has_solution && (!finite || sigmas > 5.0); }
+  static constexpr double kMostSigmas = 5.0;
+  double worst_sigmas() const { return *std::max_element(sigmas.begin(), sigmas.end()); }
+  bool is_beyond() const { return has_solution && (!finite || worst_sigmas() > kMostSigmas); }
 };
 
 /// Feeds a navigator with all inputs by their time of arrival, and shows what it is like after each

@@ -3,12 +3,34 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "sim/cli/output.hpp"
 
 namespace leeway::cli {
 namespace {
+
+constexpr std::string_view kHead = R"(# The matrix of faults
+
+Written by `leeway atlas --faults --write docs/guide/fault-matrix.md`. Each fault is done to each
+vehicle, once its navigator has settled, for 30 s, or 60 s where it takes time to show, unless its
+row says otherwise; those of the start last for the first 30 s. Then 150 s follow. Seed 1, an IMU of
+the car-grade MEMS class at 50 Hz, a fix every second. Wrong is beyond 5 claimed sigmas in
+horizontal position, velocity or heading.
+
+| word | meaning |
+|---|---|
+| ok | wrong for 2 s at most |
+| said | wrong, and health is not `aligned`, or the time of the solution stands still |
+| SILENT n s | wrong for n s, more than 2, and nothing says so |
+| silent n s | the same, where no navigator could tell: see the end of this page |
+| lost | not within 5 sigma and 3 times the RMS without a fault for good, 150 s after |
+
+Where clocks disagree, a solution is right that is right by one of them. A state of health that the
+navigator has without a fault, too, tells nothing.
+
+)";
 
 const sim::Fault& fault_of(const sim::FaultCell& cell) { return sim::faults()[cell.fault]; }
 
@@ -43,7 +65,8 @@ std::string percent(std::size_t part, std::size_t whole) {
 
 std::string summary_text(const sim::FaultSummary& s) {
   return fmt::format(
-      "{} cells. Silent where it could be told: {} ({}); where nobody could: {}; not a number: {}.\n"
+      "{} cells. Silent where it could be told: {} ({}); where nobody could: {}; not a number: "
+      "{}.\n"
       "Recovered: {} of {} cells whose fault ends ({}), 95 % of them within {:.0f} s of its end.\n",
       s.cells, s.silent, percent(s.silent, s.cells), s.unknowable, s.not_finite, s.recovered,
       s.ending, percent(s.recovered, s.ending), s.recovery_95_s);
@@ -121,6 +144,9 @@ Json cell_json(const sim::FaultCell& cell) {
           {"word", word(cell)},
           {"told_s", cell.told_s},
           {"silent_s", cell.silent_s},
+          {"silent_position_s", cell.silent_by_s[0]},
+          {"silent_velocity_s", cell.silent_by_s[1]},
+          {"silent_heading_s", cell.silent_by_s[2]},
           {"silent", cell.is_silent()},
           {"unknowable", is_unknowable(cell)},
           {"finite", cell.finite},
@@ -165,22 +191,7 @@ Json faults_json(const sim::FaultMatrix& matrix) {
 }
 
 std::string faults_markdown(const sim::FaultMatrix& matrix) {
-  return "# The matrix of faults\n\n"
-         "Written by `leeway atlas --faults --write docs/guide/fault-matrix.md`. Each fault is done "
-         "to each vehicle, once its\n"
-         "navigator has settled, for 30 s unless the row says otherwise; then 150 s follow. Seed 1, "
-         "an IMU of the car-grade\n"
-         "MEMS class at 50 Hz, a fix every second. Wrong is beyond 5 claimed sigmas in horizontal "
-         "position, velocity or heading.\n\n"
-         "| word | meaning |\n|---|---|\n"
-         "| ok | wrong for 2 s at most |\n"
-         "| said | wrong, and health is not `aligned`, or the time of the solution stands still |\n"
-         "| SILENT n s | wrong for n s, more than 2, and nothing says so |\n"
-         "| silent n s | the same, where no navigator could tell: see the end of this page |\n"
-         "| lost | not within 5 sigma and 3 floors (RMS without a fault) for good, 150 s after |\n\n"
-         "Where clocks disagree, a solution is right that is right by one of them. A state of health "
-         "that the navigator has without\na fault, too, tells nothing.\n\n" +
-         summary_text(summary_of(matrix)) + "\n" + floors_markdown(matrix) +
+  return std::string(kHead) + summary_text(summary_of(matrix)) + "\n" + floors_markdown(matrix) +
          matrix_markdown(matrix) + "\n## What cannot be known\n\n" + unknowable_markdown();
 }
 
