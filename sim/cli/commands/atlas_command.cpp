@@ -1,6 +1,7 @@
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/tables/atlas_tables.hpp"
+#include "sim/cli/tables/fault_tables.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -8,11 +9,13 @@ namespace {
 struct AtlasChoice {
   std::vector<std::string> scenes{};
   bool list{false};
+  bool faults{false};
   sim::AtlasOptions atlas{};
   int threads{0};
   std::filesystem::path csv{};
   std::filesystem::path markdown{};
   std::filesystem::path expected{};
+  std::filesystem::path fault_page{};
   Output output{};
 };
 
@@ -34,11 +37,27 @@ int write_expected(const AtlasChoice& options) {
   return kSuccess;
 }
 
+/// The matrix of faults in place of the scenes.
+int run_faults(const AtlasChoice& options) {
+  constexpr double kBearableShare = 0.02;
+  const sim::FaultMatrix matrix = [&options] {
+    Progress progress("faults");
+    return sim::run_fault_matrix(options.atlas.brief, options.threads, std::ref(progress));
+  }();
+  show(options.output,
+       answer_json("atlas", {{"faults", true}, {"short", options.atlas.brief}},
+                   faults_json(matrix)),
+       [&] { print_faults(matrix); });
+  if (!options.fault_page.empty()) write_file(options.fault_page, faults_markdown(matrix));
+  return summary_of(matrix).silent_share() > kBearableShare ? kNoAnswer : kSuccess;
+}
+
 int run(const AtlasChoice& options) {
   if (options.list) {
     print_atlas_list();
     return kSuccess;
   }
+  if (options.faults) return run_faults(options);
   if (!options.expected.empty()) return write_expected(options);
   const auto results = run_scenes(options, options.atlas);
   const auto surprises = sim::atlas_surprises(results, options.atlas);
@@ -59,6 +78,12 @@ void add_options(CLI::App& app, AtlasChoice& options) {
   app.add_flag("--list", options.list, "name the scenes and run nothing");
   CLI::Option* brief =
       app.add_flag("--short", options.atlas.brief, "fewer trials and shorter drives, for tests");
+  CLI::Option* faults = app.add_flag(
+      "--faults", options.faults, "the matrix of faults by vehicles in place of the scenes");
+  faults->excludes(scene);
+  app.add_option("--write", options.fault_page, "write the matrix of faults as a page")
+      ->type_name("FILE.md")
+      ->needs(faults);
   add_threads_option(app, options.threads);
   add_output_options(app, options.output);
   add_file_option(app, "--csv", options.csv, "write a row for each cell as CSV");
@@ -73,9 +98,10 @@ void add_options(CLI::App& app, AtlasChoice& options) {
 const Command<AtlasChoice> kAtlas{
     "atlas", "Scenes in which methods break, run against every variant, with expected verdicts",
     "Exits with 2 when a cell is not as expected, or a variant of the library fails and no\n"
-    "detector says so.\n"
-    "Example:\n"
-    "  leeway atlas --scene parked-rtk,wrong-heading --csv cells.csv",
+    "detector says so; with --faults, when more than 2 % of the cells are silent.\n"
+    "Examples:\n"
+    "  leeway atlas --scene parked-rtk,wrong-heading --csv cells.csv\n"
+    "  leeway atlas --faults --short",
     add_options, run};
 
 }  // namespace

@@ -1,0 +1,61 @@
+/// @file
+/// A drive of a regime with its truth, and a navigator that is fed with its inputs and compared
+/// with it, ten times a second.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "leeway/navigator/navigator.hpp"
+#include "leeway/strapdown/nav_state.hpp"
+#include "sim/atlas/faults/fault.hpp"
+#include "sim/atlas/faults/regime.hpp"
+
+namespace leeway::sim {
+
+inline constexpr double kEpochS = 0.1;  ///< between comparisons
+
+struct FaultDrive {
+  Trajectory trajectory{};
+  std::vector<NavState> truth{};  ///< at k kEpochS, from 0 on
+  FaultInputs inputs{};           ///< as the sensors deliver them, without any fault
+};
+
+/// Seed 1.
+FaultDrive drive_of(const Regime& regime, const Trajectory& trajectory, double duration_s);
+
+/// What of a solution can be wrong.
+enum class FaultError { kPosition, kVelocity, kHeading };
+constexpr auto names(FaultError) { return std::array{"position", "velocity", "heading"}; }
+
+/// What a navigator is like at one time.
+struct FaultEpoch {
+  double t_s{};
+  bool has_solution{false};
+  bool finite{true};         ///< of the solution, sigmas included
+  bool stands_still{false};  ///< the time of the solution is that of the epoch before
+  double horizontal_m{0.0};  ///< error
+  /// Errors over their claimed sigmas, by FaultError: north or east, the worst axis of velocity,
+  /// heading. The last counts for little where the claim is tens of degrees: it is at most 180.
+  std::array<double, 3> sigmas{};
+  Health::State state{};
+
+  static constexpr double kMostSigmas = 5.0;
+  double worst_sigmas() const { return *std::max_element(sigmas.begin(), sigmas.end()); }
+  bool is_beyond() const { return has_solution && (!finite || worst_sigmas() > kMostSigmas); }
+};
+
+/// Feeds a navigator with all inputs by their time of arrival, and shows what it is like after each
+/// epoch up to end_s. Where clocks disagree, a solution is right that is right by one of them: now,
+/// or at its own time.
+/// @param inputs  those of the drive, spoiled
+void run_navigator(Navigator& navigator, FaultInputs inputs, const FaultDrive& drive, double end_s,
+                   const std::function<void(const FaultEpoch&)>& observe);
+
+/// Starts at the truth but for a turn about the vertical, with 3 deg of claimed sigma.
+void start_turned(Navigator& navigator, const Regime& regime, const NavState& truth,
+                  double heading_error_rad);
+
+}  // namespace leeway::sim
