@@ -15,9 +15,9 @@ HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, Error
 
 bool can_start(const Estimate& estimate, const ErrorMatrix& P) {
   constexpr double kLowestM = 6.35e6;       // from the Earth's centre
-  constexpr double kLargestTurnRad = 10.0;  // beyond, rounding makes a negative variance of another
+  constexpr double kLargestPsiRad = 10.0;   // beyond, rounding makes a negative variance of another
   return is_sane(estimate, P) && P.diagonal().minCoeff() > 0.0 &&
-         P.diagonal().segment<3>(kPsi).maxCoeff() < kLargestTurnRad * kLargestTurnRad &&
+         P.diagonal().segment<3>(kPsi).maxCoeff() < kLargestPsiRad * kLargestPsiRad &&
          estimate.nav.r_e_m.norm() > kLowestM;
 }
 

@@ -159,11 +159,11 @@ bool NavigatorState::motion_hides_heading(Time t) const {
 }
 
 bool NavigatorState::moves() const {
-  constexpr double kMovesMps = 0.5;
+  constexpr double kMovingMps = 0.5;
   if (!bank_) return false;
   const Ekf& filter = bank_->best();
   const double sigma_mps = std::sqrt(filter.kernel().matrix().diagonal().segment<3>(kDv).sum());
-  return filter.estimate().nav.v_e_mps.norm() > kMovesMps + 3.0 * sigma_mps;
+  return filter.estimate().nav.v_e_mps.norm() > kMovingMps + 3.0 * sigma_mps;
 }
 
 Verdict NavigatorState::take(const GnssFix& fix) {
@@ -265,7 +265,7 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   constexpr double kUpS = 30.0;
   constexpr double kDownS = 300.0;
   constexpr double kBeyondChance = 1.5;  // 90 degrees of freedom stay below with 99.8 %
-  constexpr double kLargestRatio = 4.0;
+  constexpr double kSteepestRatio = 4.0;
   Ekf& filter = bank_->best();
   const double dt_s = std::clamp(to_seconds(fix.time - last_fused_.value_or(fix.time)), 0.0, kUpS);
   // A slow error of the receiver's positions would be taken for the IMU's.
@@ -275,7 +275,7 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
           : 0.0;
   const double ratio = std::max(position_ratio, velocity_noise_.nis_ratio());
   double scale = filter.inertial().noise_scale();
-  if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kLargestRatio), dt_s / kUpS);
+  if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);
   if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / kDownS);
   filter.scale_imu_noise(std::min(scale, kLargestImuScale));
 }

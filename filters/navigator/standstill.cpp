@@ -62,7 +62,7 @@ bool StandstillDetector::push(const ImuBlock& block, const Ekf& filter) {
 }
 
 bool StandstillDetector::is_even(const ImuBlock& block, const Ekf& filter) const {
-  constexpr double kSigmas = 3.0;
+  constexpr double kEvenSigmas = 3.0;
   const auto& [nav, bias] = filter.estimate();
   const ErrorMatrix& P = filter.kernel().matrix();
   const Eigen::Matrix3d C_eb = nav.q_eb.toRotationMatrix();
@@ -77,7 +77,7 @@ bool StandstillDetector::is_even(const ImuBlock& block, const Ekf& filter) const
   const double horizontal2 = a_e.squaredNorm() - std::pow(down_e.dot(a_e), 2);
   const double variance = P_a.trace() - down_e.dot(P_a * down_e) +
                           2.0 * std::pow(force_noise_mps_per_sqrt_s_, 2) / block.dt_s;
-  return horizontal2 < kSigmas * kSigmas * variance;
+  return horizontal2 < kEvenSigmas * kEvenSigmas * variance;
 }
 
 bool StandstillDetector::looks_still(const ImuBlock& block, const Ekf& filter) const {
