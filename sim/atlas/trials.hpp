@@ -37,7 +37,7 @@ std::vector<RecordedTrial> recorded_trials(const Scene& scene, int n);
 using Spoil = std::function<void(RecordedTrial& trial)>;
 
 /// A condition of a scene.
-struct Fault {
+struct SpoiledCondition {
   std::string condition{};
   Spoil spoil{};
 };

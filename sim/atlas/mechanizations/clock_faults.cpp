@@ -32,7 +32,7 @@ Time rolled(Time t) {
   return of_week.time_since_epoch() >= kWeekLength ? of_week - kWeekLength : of_week;
 }
 
-std::vector<Fault> faults() {
+std::vector<SpoiledCondition> faults() {
   return {{"none", moved_times(same, same)},
           {"one IMU time 1000 s ahead", moved_times(one_wild, same)},
           {"all clocks jump an hour ahead", moved_times(hour_ahead, hour_ahead)},
@@ -59,7 +59,7 @@ std::vector<AtlasCell> run_clock_faults(const AtlasOptions& options) {
   const auto trials = recorded_trials(scene, options.brief ? 1 : 3);
   const Score score = score_after(kClockScoredFromS, &ErrorSums::horizontal_rms_m);
   const AtlasColumn trusting = ekf_column(AtlasGroup::kNotOffered, "Ekf/times trusted");
-  return cells_over(faults(), [&](const Fault& fault) {
+  return cells_over(faults(), [&](const SpoiledCondition& fault) {
     const auto spoilt = spoiled(trials, fault.spoil);
     auto cells = scored({navigator_column()}, scene.filter, spoilt, fault.condition, score);
     append(cells, scored({trusting}, scene.filter, spoiled(spoilt, trust_times), fault.condition,

@@ -38,7 +38,7 @@ void rectify(ImuIncrement& inc) {
   inc.dtheta_b_rad += 0.3 * kRadPerDeg * inc.dt_s * Eigen::Vector3d(1.0, 1.0, 1.0);
 }
 
-std::vector<Fault> sensor_faults() {
+std::vector<SpoiledCondition> sensor_faults() {
   const auto imu = each_increment;
   return {{"as modelled", [](RecordedTrial&) {}},
           {"gyro scale 3 %", imu([](ImuIncrement& inc) { inc.dtheta_b_rad *= 1.03; })},
@@ -61,7 +61,7 @@ std::vector<AtlasCell> run_under_modelled(const AtlasOptions& options) {
   scene.imu_rate_hz = 50.0;
   const auto trials = spoiled(recorded_trials(scene, options.brief ? 1 : 4), thin_out_fixes);
   const auto columns = claiming(few_atlas_columns());
-  return cells_over(sensor_faults(), [&](const Fault& fault) {
+  return cells_over(sensor_faults(), [&](const SpoiledCondition& fault) {
     const auto faulty = spoiled(trials, fault.spoil);
     auto cells = scored(columns, scene.filter, faulty, fault.condition, horizontal_over_claim);
     append(cells, scored(columns, told_as_noise(scene.filter), faulty,

@@ -41,7 +41,7 @@ void take_ms_for_s(RecordedTrial& trial) {
   }
 }
 
-std::vector<Fault> slips() {
+std::vector<SpoiledCondition> slips() {
   constexpr double kInterval = 0.01;
   const auto imu = each_increment;
   return {
@@ -66,7 +66,7 @@ std::vector<Fault> slips() {
 std::vector<AtlasCell> run_unit_slips(const AtlasOptions& options) {
   const Scene scene = town_drive(120.0);
   const auto trials = recorded_trials(scene, options.brief ? 1 : 3);
-  return cells_over(slips(), [&](const Fault& slip) {
+  return cells_over(slips(), [&](const SpoiledCondition& slip) {
     return scored(few_atlas_columns(), scene.filter, spoiled(trials, slip.spoil), slip.condition,
                   score_after(90.0, &ErrorSums::horizontal_rms_m));
   });
