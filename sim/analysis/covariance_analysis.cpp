@@ -46,7 +46,8 @@ class SceneCovariance {
  public:
   /// At the scene's start. @param by_source  keeps the sources apart, for error_budget()
   SceneCovariance(const Scene& scene, bool by_source)
-      : noise_(process_noise(scene.filter.imu, scene.filter.biases)),
+      : imu_(scene.filter.imu),
+        noise_(process_noise(scene.filter.imu, scene.filter.biases)),
         P_(initial_claim(scene)),
         truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
     const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
@@ -56,7 +57,7 @@ class SceneCovariance {
   }
 
   void propagate(const Leg& leg) {
-    leeway::propagate(P_, leg.Phi, noise_);
+    leeway::propagate(P_, leg.Phi, with_motion(noise_, imu_, leg.motion));
     if (truth_) truth_->propagate(leg);
   }
 
@@ -80,6 +81,7 @@ class SceneCovariance {
   ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
 
  private:
+  ImuErrorModel imu_;
   ProcessNoise noise_;
   ErrorMatrix P_;
   std::optional<TruthModel<1>> truth_;  // none: the filter knows all there is, P is the truth

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/ekf/inertial_estimate.hpp"
 #include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
@@ -38,12 +39,18 @@ ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
   step_s_ = span_s / static_cast<double>(steps);
   piece_s_ = step_s_ / kPiecesPerStep;
   pieces_.reserve(steps * kPiecesPerStep);
+  MeanMotion mean;
   for (std::size_t k = 0; k < steps * kPiecesPerStep; ++k) {
     const TruthPoint truth = truth_at(trajectory, (static_cast<double>(k) + 0.5) * piece_s_);
+    const double window_s = std::max(
+        std::min(static_cast<double>(k + 1) * piece_s_, InertialEstimate::kMeanRateS), piece_s_);
+    const Eigen::Vector3d acceleration_e_mps2 =
+        truth.nav.q_eb * truth.f_ib_b_mps2 + gravity_e(GravityModel::kNormal, truth.nav.r_e_m);
+    mean.omega_ib_b_radps += piece_s_ / window_s * (truth.omega_ib_b_radps - mean.omega_ib_b_radps);
+    mean.acceleration_e_mps2 +=
+        piece_s_ / window_s * (acceleration_e_mps2 - mean.acceleration_e_mps2);
     pieces_.push_back({truth.nav.q_eb.toRotationMatrix(), gravity_gradient_e(truth.nav.r_e_m),
-                       truth.f_ib_b_mps2, truth.omega_ib_b_radps,
-                       truth.nav.q_eb * truth.f_ib_b_mps2 +
-                           gravity_e(GravityModel::kNormal, truth.nav.r_e_m)});
+                       truth.f_ib_b_mps2, truth.omega_ib_b_radps, mean});
   }
   Phi_.reserve(steps);
   for (std::size_t step = 0; step < steps; ++step) {
@@ -99,8 +106,8 @@ Leg ErrorTrack::part(std::size_t step, double from_s, double to_s) const {
     if (end_s - begin_s <= kSlack * piece_s_) continue;
     const Piece& piece = pieces_[step * kPiecesPerStep + i];
     extend(leg, piece, end_s - begin_s);
-    leg.motion.omega_ib_b_radps += (end_s - begin_s) * piece.omega_ib_b_radps;
-    leg.motion.acceleration_e_mps2 += (end_s - begin_s) * piece.acceleration_e_mps2;
+    leg.motion.omega_ib_b_radps += (end_s - begin_s) * piece.motion.omega_ib_b_radps;
+    leg.motion.acceleration_e_mps2 += (end_s - begin_s) * piece.motion.acceleration_e_mps2;
   }
   leg.motion.omega_ib_b_radps /= leg.Phi.dt_s;
   leg.motion.acceleration_e_mps2 /= leg.Phi.dt_s;

@@ -31,14 +31,14 @@ struct TriadQuantities {
 };
 
 using UnitList = std::array<const Unit*, 4>;
-constexpr UnitList kAcceleration{&u::kMps2, &u::kMg, &u::kUg};
+constexpr UnitList kAccelerationUnits{&u::kMps2, &u::kMg, &u::kUg};
 constexpr UnitList kRate{&u::kDegPerH, &u::kDegPerS, &u::kRadps};
 constexpr UnitList kGSensitivity{&u::kDegPerHPerG, &u::kDegPerSPerG};
 
 constexpr TriadQuantities kAccelerometer{
-    .bias = {"bias", kAcceleration, between(-2.0 * u::kG, 2.0 * u::kG)},
-    .bias_sigma = {"bias_sigma", kAcceleration, zero_or(0.1 * u::kUg.si, u::kG)},
-    .in_run_sigma = {"in_run_sigma", kAcceleration, zero_or(0.01 * u::kUg.si, u::kG)},
+    .bias = {"bias", kAccelerationUnits, between(-2.0 * u::kG, 2.0 * u::kG)},
+    .bias_sigma = {"bias_sigma", kAccelerationUnits, zero_or(0.1 * u::kUg.si, u::kG)},
+    .in_run_sigma = {"in_run_sigma", kAccelerationUnits, zero_or(0.01 * u::kUg.si, u::kG)},
     .noise = {"noise",
               {&u::kUgPerSqrtHz, &u::kMpsPerSqrtH},
               zero_or(0.05 * u::kUgPerSqrtHz.si, 2e4 * u::kUgPerSqrtHz.si)},
@@ -62,8 +62,8 @@ constexpr Quantity kGyroG{"g_sensitivity", kGSensitivity,
 constexpr Quantity kGyroGSigma{"g_sensitivity_sigma", kGSensitivity,
                                zero_or(1e-5 * u::kDegPerHPerG.si, 1e5 * u::kDegPerHPerG.si)};
 
-constexpr const char* kPerAxis = ", one for each axis: [x, y, z]";
-constexpr const char* kOrPerAxis = ", or one for each axis: [x, y, z]";
+constexpr const char* kEachAxis = ", one for each axis: [x, y, z]";
+constexpr const char* kOrEachAxis = ", or one for each axis: [x, y, z]";
 constexpr const char* kOrMatrix = ", or 3 x 3";
 constexpr const char* kSix =
     ", six of them: [xy, xz, yx, yz, zx, zy], or 3 x 3 with a zero diagonal";
@@ -120,7 +120,7 @@ class ModelSection {
   void read_triad(TomlSection& section, const TriadQuantities& q, TriadErrorModel& triad,
                   Stated bias_sigma) {
     auto* const given = &given_[static_cast<std::size_t>(bias_sigma)];
-    if (const auto bias = section.value(q.bias)) triad.bias = bias->vector3(kPerAxis);
+    if (const auto bias = section.value(q.bias)) triad.bias = bias->vector3(kEachAxis);
     triad.bias_sigma = number(given[0] = section.value(q.bias_sigma));
     triad.in_run.sigma = number(given[1] = section.value(q.in_run_sigma));
     const auto tau = section.value(q.in_run_tau);
@@ -138,8 +138,8 @@ class ModelSection {
 
   static void read_matrix(TomlSection& section, const TriadQuantities& q, TriadErrorModel& triad) {
     if (const auto scale = section.value(q.scale)) {
-      triad.M += scale->is_array() ? Eigen::Matrix3d(scale->vector3(kOrPerAxis).asDiagonal())
-                                   : diagonal(scale->number(kOrPerAxis));
+      triad.M += scale->is_array() ? Eigen::Matrix3d(scale->vector3(kOrEachAxis).asDiagonal())
+                                   : diagonal(scale->number(kOrEachAxis));
     }
     triad.scale_sigma = section.number(q.scale_sigma).value_or(0.0);
     if (const auto value = section.value(q.misalignment)) triad.M += misalignment(*value);

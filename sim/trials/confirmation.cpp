@@ -21,7 +21,7 @@ bool within_band(double mean, int dof_each, std::int64_t trials) {
 }
 
 /// A campaign at one interval, beside the linear analysis of the same fixes.
-struct Run {
+struct TrialRun {
   CampaignResult campaign{};
   CovarianceAnalysis linear{};
 
@@ -36,7 +36,7 @@ class Confirmer {
       : scene_(scene), track_(track), progress_(std::move(progress)) {}
 
   Confirmation confirm(const Interval& answer) {
-    const Run first = run(answer.interval_s);
+    const TrialRun first = run(answer.interval_s);
     Confirmation c;
     c.campaign = first.campaign;
     c.rms_over_true = first.rms_over_true();
@@ -48,9 +48,9 @@ class Confirmer {
   }
 
  private:
-  Run run(double interval_s) {
+  TrialRun run(double interval_s) {
     scene_.gnss.interval_s = interval_s;
-    Run r;
+    TrialRun r;
     r.linear = analyze(scene_, track_);
     CampaignOptions options;
     options.score_last_s = r.linear.window_s;
@@ -61,7 +61,7 @@ class Confirmer {
 
   /// Secants in log(error) over log(interval) between an interval that keeps the limit and one that
   /// does not. @returns the longest found that keeps it in the trials; nothing without one.
-  std::optional<double> search(const Interval& answer, Run here) {
+  std::optional<double> search(const Interval& answer, TrialRun here) {
     std::optional<double> kept;  // logarithms of intervals, s
     std::optional<double> lost;
     double log_s = std::log(answer.interval_s);

@@ -68,7 +68,7 @@ class ErrorTrack {
     Eigen::Matrix3d gravity_gradient_e;
     Eigen::Vector3d f_b_mps2;
     Eigen::Vector3d omega_ib_b_radps;
-    Eigen::Vector3d acceleration_e_mps2;
+    MeanMotion motion;  // as the filter's, over the seconds before
   };
 
   void extend(Leg& leg, const Piece& piece, double dt_s) const;
