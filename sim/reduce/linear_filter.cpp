@@ -1,11 +1,13 @@
 #include "sim/reduce/linear_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "leeway/covariance/covariance_track.hpp"
 #include "leeway/covariance/symmetric_kernel.hpp"
 #include "leeway/earth/earth.hpp"
+#include "leeway/ekf/inertial_estimate.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
@@ -38,7 +40,8 @@ class Pass {
       : path_(path),
         model_(model),
         weight_(model.config.gnss_correlation_s),
-        noise_(process_noise(model.config.imu, model.config.biases)),
+        steady_noise_(process_noise(model.config.imu, model.config.biases)),
+        noise_(steady_noise_),
         strapdown_(strapdown_function(model.config.strapdown)),
         state_{ErrorVector::Zero(),
                {SymmetricKernel<Scalar>(initial_covariance({path.states.front(), {}},
@@ -69,11 +72,23 @@ class Pass {
     Covariance covariance;
   };
 
+  /// The mean motion, as InertialEstimate has it, and the noise in it.
+  void follow_motion(const ImuIncrement& inc, const StrapdownStep& step, const NavState& nav) {
+    motion_s_ = std::min(motion_s_ + inc.dt_s, InertialEstimate::kMeanRateS);
+    const double share = inc.dt_s / std::max(motion_s_, inc.dt_s);
+    const Eigen::Vector3d acceleration_e_mps2 =
+        step.dv_f_e_mps / inc.dt_s - kStandardGravityMps2 * nav.r_e_m.normalized();
+    motion_.omega_ib_b_radps += share * (inc.dtheta_b_rad / inc.dt_s - motion_.omega_ib_b_radps);
+    motion_.acceleration_e_mps2 += share * (acceleration_e_mps2 - motion_.acceleration_e_mps2);
+    noise_ = with_motion(steady_noise_, model_.config.imu, motion_);
+  }
+
   void step(std::size_t first, std::size_t count) {
     ImuIncrement inc = path_.plan.increments()[first];
     for (std::size_t k = first + 1; k < first + count; ++k) append(inc, path_.plan.increments()[k]);
     NavState nav = path_.states[first];
     const StrapdownStep step = strapdown_(nav, inc, history_);
+    follow_motion(inc, step, nav);
     const ErrorVector missed = difference({path_.states[first + count], {}}, {nav, {}});
     const Eigen::Vector3d r_e_m = path_.states[first].r_e_m;
     const Eigen::Matrix3d true_gradient_e = gravity_gradient_e(r_e_m);
@@ -156,7 +171,10 @@ class Pass {
   const TruePath& path_;
   const FilterModel& model_;
   PositionWeight weight_;
+  ProcessNoise steady_noise_;
   ProcessNoise noise_;
+  MeanMotion motion_{};
+  double motion_s_{0.0};
   StrapdownFunction strapdown_;
   ImuHistory history_{};
   State state_;
