@@ -12,7 +12,7 @@ namespace leeway {
 namespace {
 
 constexpr double kBridgeTurnRadps = 0.5;
-constexpr double kBridgeMaxTurnRad = 1.0;  // beyond, the linearized filter does not find back
+constexpr double kBridgeMaxTurnRad = 1.8;  // anywhere on the circle: pi / sqrt(3)
 constexpr double kBridgeTiltRad = 0.1;     // roads lean; they do not turn vehicles over
 constexpr double kBridgeAccelerationMps2 = 3.0;
 

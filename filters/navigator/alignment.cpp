@@ -103,7 +103,7 @@ std::optional<Alignment> Aligner::take(const GnssFix& fix) {
       // A start needs a place.
     } else if (config_.heading_from_course) {
       if (moving) result = align_by_course(fix, *previous_->velocity);
-    } else if (moving || (at_rest && rest_.dt_s >= config_.min_level_s)) {
+    } else if (!at_rest || rest_.dt_s >= config_.min_level_s) {
       result = level_only(fix, *previous_->velocity, at_rest);
     }
   }

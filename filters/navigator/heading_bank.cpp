@@ -19,6 +19,9 @@ constexpr double kEvidenceCorrelationS = 2.0;
 constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S that decides nothing
 constexpr double kMemory = 10.0;             // independent measurements
 constexpr double kNegligibleVariance = 0.5;  // relative
+constexpr int kFixDof = 3;
+constexpr double kErrorEndsPerS = 0.1;  // of a receiver that is wrong
+constexpr double kLongAgoS = 1e3;
 
 constexpr double kPi = 180.0 * kRadPerDeg;
 
@@ -104,39 +107,42 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
 
 double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
 
-// p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
-double HeadingBank::evidence_weight(const UpdateOutcome& outcome) {
-  std::optional<Time>& last =
-      last_evidence_[static_cast<std::size_t>(std::clamp(outcome.dof, 0, 6))];
-  const double root =
-      last ? gnss_position_weight(to_seconds(outcome.time - *last), kEvidenceCorrelationS) : 1.0;
-  last = outcome.time;
-  return root * root;
-}
-
 void HeadingBank::weigh(const Outcomes& outcomes) {
-  const auto fused = [](const UpdateOutcome& r) {
-    return r.outcome == UpdateOutcome::Outcome::kFused;
-  };
-  if (std::none_of(outcomes.begin(), outcomes.end(), fused)) return;
-  const double weight = evidence_weight(*std::find_if(outcomes.begin(), outcomes.end(), fused));
+  using Outcome = UpdateOutcome::Outcome;
+  const auto is_fused = [](const UpdateOutcome& r) { return r.outcome == Outcome::kFused; };
+  const auto fused = std::find_if(outcomes.begin(), outcomes.end(), is_fused);
+  if (fused == outcomes.end()) return;
+  std::optional<Time>& last = last_evidence_[static_cast<std::size_t>(std::clamp(fused->dof, 0, 6))];
+  const double since_s = last ? to_seconds(fused->time - *last) : kLongAgoS;
+  last = fused->time;
+  // p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
+  const double root = gnss_position_weight(since_s, kEvidenceCorrelationS);
+  const double weight = root * root;
+  const bool are_rivals = count_ <= kMaxRivals;
   std::array<double, kMaxFilters> surprise{};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     if (!members_[k]) continue;
     const UpdateOutcome& r = outcomes[k];
+    const bool refuses = r.outcome == Outcome::kGated;
     surprise[k] = (r.nis < r.gate ? r.nis : r.gate) + r.log_det_S;
-    const bool broken =
-        r.outcome == UpdateOutcome::Outcome::kUnusable || !std::isfinite(surprise[k]);
+    const bool broken = r.outcome == Outcome::kUnusable || !std::isfinite(surprise[k]);
     if (broken && !collapsed()) {
       drop(k);
+      continue;
+    }
+    log_weight_[k] *= 1.0 - weight / kMemory;
+    const bool refuses_again = refuses && refused_[k];
+    if (fused->dof >= kFixDof) refused_[k] = refuses;
+    if (are_rivals && refuses_again) {
+      log_weight_[k] -= kErrorEndsPerS * since_s;
+      surprise[k] = std::numeric_limits<double>::lowest();
       continue;
     }
     if (broken) surprise[k] = 0.0;  // the last one stays, whatever it is
     least = std::min(least, surprise[k]);
   }
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
-    log_weight_[k] *= 1.0 - weight / kMemory;
     log_weight_[k] -= 0.5 * weight * std::max(surprise[k] - least - kIgnoredSurprise, 0.0);
   }
   normalize();
@@ -171,6 +177,27 @@ void HeadingBank::merge() {
       drop(light);
     }
   }
+  normalize();
+  join();
+}
+
+// Members that differ by little more than each is uncertain are one filter that is as uncertain as
+// all of them.
+void HeadingBank::join() {
+  constexpr double kLittleMore = 4.0;  // in variance
+  if (collapsed()) return;
+  ErrorMatrix between = ErrorMatrix::Zero();
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (!members_[k] || k == best_) continue;
+    const ErrorVector x = difference(members_[k]->estimate(), best().estimate());
+    between += std::exp(log_weight_[k]) * x * x.transpose();
+  }
+  const ErrorVector within = best().kernel().matrix().diagonal();
+  if ((covariance().diagonal().array() > kLittleMore * within.array()).any()) return;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (members_[k] && k != best_) drop(k);
+  }
+  edit(best(), [&](Belief& belief) { belief.P += between; });
   normalize();
 }
 

@@ -8,6 +8,7 @@
 namespace leeway {
 namespace {
 
+constexpr double kDoubtS = 60.0;  // twice as long as a receiver's errors last
 constexpr double kBrokenImuScale = 30.0;  // beyond, the IMU cannot be what it is said to be
 
 }  // namespace
@@ -35,7 +36,8 @@ Health NavigatorState::health(Time now) const {
       std::sqrt(std::max({1.0, health.position_nis_ratio, health.velocity_nis_ratio}));
   using State = Health::State;
   health.imu_sigma_scale = bank_->best().inertial().noise_scale();
-  const bool is_inconsistent = health.imu_sigma_scale > kBrokenImuScale ||
+  const bool was_contradicted = contradicted_ && to_seconds(now - *contradicted_) < kDoubtS;
+  const bool is_inconsistent = was_contradicted || health.imu_sigma_scale > kBrokenImuScale ||
                                position_noise_.is_inconsistent() ||
                                velocity_noise_.is_inconsistent();
   health.state = gate_recovery_.is_row()          ? State::kGating

@@ -98,9 +98,13 @@ void NavigatorState::begin_vehicle() {
 void NavigatorState::integrate(const ImuIncrement& inc) {
   const ImuIncrement in_body = C_bs_ ? turned(inc, *C_bs_) : inc;
   if (!bank_) return aligner_.push(in_body);
+  if (is_starting_beside_) aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
   const bool rested = aiding_.at_rest();
-  aiding_.push(in_body, *bank_);
+  if (aiding_.push(in_body, *bank_)) {
+    contradicted_ = inc.time;
+    doubt_heading(bank_->best(), bank_->best());
+  }
   if (rested && !aiding_.at_rest()) open_heading();
   // From numbers that were sound when P was last propagated, a few samples cannot reach infinity.
   if (bank_->best().covariance_is_current() && !is_sane(*bank_)) realign();
@@ -188,17 +192,17 @@ Verdict NavigatorState::use(const GnssFix& fix) {
   const Ekf* best = &bank_->best();
   bool is_explained = false;  // by any of the filters
   last_update_ = bank_->update([&](Ekf& filter) {
-    const bool hides = motion_hides_heading(fix.time) && rest_hides_heading(filter);
-    const UpdateOutcome outcome =
-        filter.update(fix, {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
-                            hides ? Held::kHeadingAndTurn : Held::kNothing, has_white_error(fix)});
+    const UpdateOutcome outcome = update(filter, fix);
     is_explained = is_explained || outcome.outcome == UpdateOutcome::Outcome::kFused;
     return outcome;
   });
   Verdict verdict = settle(fix, is_explained);
   if (was_refused && verdict == Verdict::kFused && best != &bank_->best()) {
     ++resets_;
+    contradicted_ = fix.time;
     gate_recovery_.begin(fix.time);
+    position_noise_.begin_claims();
+    velocity_noise_.begin_claims();
     verdict = Verdict::kReset;
   }
   if (!is_sane(*bank_)) {
@@ -209,7 +213,53 @@ Verdict NavigatorState::use(const GnssFix& fix) {
     if (!repair_covariance(filter)) ++repairs_;
   });
   if (!C_bs_) find_mount();
+  start_beside(fix);
   return verdict;
+}
+
+// The IMU may be right again, or it was the attitude that was wrong: where the IMU is taken for a
+// far noisier one than it is, a second start is weighed against the filter.
+void NavigatorState::start_beside(const GnssFix& fix) {
+  constexpr double kDoubtedScale = 4.0;
+  const Ekf filter = bank_->best();
+  if (!bank_->collapsed() || filter.inertial().noise_scale() < kDoubtedScale ||
+      was_opened(fix.time)) {
+    is_starting_beside_ = false;
+    return;
+  }
+  if (!is_starting_beside_) aligner_ = aligner_of(config_);
+  is_starting_beside_ = true;
+  const auto found = aligner_.push(fix);
+  if (!found || !can_start(found->estimate, found->P)) return;
+  bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
+                      found->turn_sigma_rad);
+  if (C_bs_) begin_vehicle();
+  bank_->challenge(filter, 1.0, HeadingBank::kMaxFilters);
+  heading_doubted_ = fix.time;
+  is_starting_beside_ = false;
+}
+
+bool NavigatorState::was_opened(Time now) const {
+  constexpr double kOnceInS = 60.0;
+  return heading_doubted_ && to_seconds(now - *heading_doubted_) < kOnceInS;
+}
+
+UpdateOutcome NavigatorState::update(Ekf& filter, const GnssFix& fix) const {
+  const bool hides = motion_hides_heading(fix.time) && rest_hides_heading(filter);
+  const FixTrust trust{position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
+                       hides ? Held::kHeadingAndTurn : Held::kNothing, has_white_error(fix)};
+  UpdateOutcome outcome = filter.update(fix, trust);
+  if (outcome.outcome != UpdateOutcome::Outcome::kGated || !fix.position || !fix.velocity) {
+    return outcome;
+  }
+  GnssFix part = fix;
+  if (outcome.position_nis > outcome.velocity_nis) {
+    part.position.reset();
+  } else {
+    part.velocity.reset();
+  }
+  outcome.fused_in_part = filter.update(part, trust).outcome == UpdateOutcome::Outcome::kFused;
+  return outcome;
 }
 
 void NavigatorState::align(const GnssFix& fix) {
@@ -232,8 +282,11 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   if (!differ_in_heading && !is_outlier) learn_noise(fix);
   if (is_gated) {
     if (odds > 0.0 && !is_explained) challenge(fix, odds);
-    return Verdict::kGated;
+    if (!last_update_.fused_in_part) return Verdict::kGated;
+    last_fused_ = fix.time;
+    return Verdict::kPartly;
   }
+  learn_imu_noise(fix);
   last_fused_ = fix.time;
   gate_recovery_.fused(fix, bank_->best());
   return Verdict::kFused;
@@ -241,14 +294,18 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
 
 void NavigatorState::learn_noise(const GnssFix& fix) {
   const UpdateOutcome& u = last_update_;
+  bool is_surprising = false;
+  const auto note = [&](ReceiverNoise& noise, const auto& innovation, const auto& R, double nis) {
+    noise.note(fix.time, innovation, R, nis);
+    is_surprising = is_surprising || noise.is_surprising();
+  };
   if (fix.velocity) {
-    velocity_noise_.note(fix.time, u.velocity_innovation_e_mps, fix.velocity->R_e_m2ps2,
-                         u.velocity_nis);
+    note(velocity_noise_, u.velocity_innovation_e_mps, fix.velocity->R_e_m2ps2, u.velocity_nis);
   }
   if (fix.position) {
-    position_noise_.note(fix.time, u.position_innovation_e_m, fix.position->R_e_m2, u.position_nis);
+    note(position_noise_, u.position_innovation_e_m, fix.position->R_e_m2, u.position_nis);
   }
-  learn_imu_noise(fix);
+  if (is_surprising) contradicted_ = fix.time;
   // Positions that keep away from the prediction by more than both claim, and agree with each
   // other, are believed at last: a receiver that settles, or one that was wrong before.
   constexpr double kDriftRatio = 2.0;  // of NIS to its expectation, over 30 fixes
@@ -263,7 +320,8 @@ void NavigatorState::learn_noise(const GnssFix& fix) {
 // too little for a minute costs less than to claim too much.
 void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   constexpr double kUpS = 30.0;
-  constexpr double kDownS = 300.0;
+  constexpr double kDownS = 300.0;  // times the squared ratio: what is far too wide is plain
+  constexpr double kShortestDownS = 10.0;
   constexpr double kBeyondChance = 1.5;  // 90 degrees of freedom stay below with 99.8 %
   constexpr double kSteepestRatio = 4.0;
   Ekf& filter = bank_->best();
@@ -276,7 +334,8 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   const double ratio = std::max(position_ratio, velocity_noise_.nis_ratio());
   double scale = filter.inertial().noise_scale();
   if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);
-  if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / kDownS);
+  const double down_s = std::max(kShortestDownS, kDownS * ratio * ratio);
+  if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / down_s);
   filter.scale_imu_noise(std::min(scale, kLargestImuScale));
 }
 
@@ -294,7 +353,9 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   const bool is_repeated = gate_recovery_.is_repeated();
   if (is_repeated && doubt_heading(rival(bank_->best()), rival(doubting))) return;
   if (bank_->count() > HeadingBank::kMaxRivals) {
-    if (is_repeated) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
+    if (is_repeated && !last_update_.fused_in_part) {
+      bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
+    }
     return;
   }
   // The more its IMU is doubted already, the likelier the filter is what is wrong.
@@ -302,15 +363,14 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
 }
 
 // Fixes that agree with each other and with no filter: it is the heading, or the IMU.
-bool NavigatorState::doubt_heading(Ekf restarted, const Ekf& doubting) {
-  constexpr double kOnceInS = 60.0;
-  const Time now = restarted.estimate().nav.time;
-  if (heading_doubted_ && to_seconds(now - *heading_doubted_) < kOnceInS) return false;
-  restarted.scale_imu_noise(bank_->best().inertial().noise_scale());
-  auto headings = bank_of_headings(restarted, HeadingBank::kWholeCircleRad);
+bool NavigatorState::doubt_heading(Ekf around, const Ekf& doubting) {
+  const Time now = around.estimate().nav.time;
+  if (was_opened(now)) return false;
+  around.scale_imu_noise(bank_->best().inertial().noise_scale());
+  auto headings = bank_of_headings(around, HeadingBank::kWholeCircleRad);
   if (!headings) return false;
   headings->challenge(doubting, 1.0, HeadingBank::kMaxFilters);
-  headings->challenge(bank_->best(), 1.0, HeadingBank::kMaxFilters);
+  if (&doubting != &bank_->best()) headings->challenge(bank_->best(), 1.0, HeadingBank::kMaxFilters);
   bank_ = *headings;
   heading_doubted_ = now;
   return true;
@@ -318,6 +378,7 @@ bool NavigatorState::doubt_heading(Ekf restarted, const Ekf& doubting) {
 
 void NavigatorState::realign() {
   ++realignments_;
+  contradicted_ = bank_->best().estimate().nav.time;
   bank_.reset();
   aligner_ = aligner_of(config_);
   C_bs_ = config_.C_bs;

@@ -10,6 +10,7 @@ namespace leeway {
 namespace {
 
 constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
+constexpr double kLargestNis = 30.0;         // one alone is no reason to doubt
 constexpr double kLargestNisRatio = 25.0;   // two outliers in a row shall not count for ever
 constexpr double kInconsistentRatio = 2.0;  // by a full window: once in 1e7
 constexpr double kFalseAlarm = 1e-6;        // by fewer fixes
@@ -38,9 +39,17 @@ bool ReceiverNoise::errors_last() const {
   return change_count_ >= kWindow && change_ratio_ < kBandLow;
 }
 
+void ReceiverNoise::begin_claims() {
+  nis_ratio_ = 1.0;
+  nis_count_ = 0;
+  cusum_ = NisCusum{};
+  is_surprising_ = false;
+}
+
 void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                          double nis) {
   average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestNisRatio));
+  is_surprising_ = cusum_.push(std::min(nis, kLargestNis), 3);
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;
   previous_ = t;

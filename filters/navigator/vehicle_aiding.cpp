@@ -1,5 +1,6 @@
 #include "leeway/navigator/vehicle_aiding.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "leeway/model/heading.hpp"
@@ -49,12 +50,15 @@ VehicleAiding::VehicleAiding(const VehicleConfig& config, const ImuErrorModel& i
   validate(config);
 }
 
-void VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
+bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
   const auto block = blocks_.push(inc);
-  if (!block) return;
+  if (!block) return false;
   at_rest_ = standstill_.push(*block, bank.best());
   even_motion_s_ = standstill_.is_even(*block, bank.best()) ? even_motion_s_ + block->dt_s : 0.0;
-  at_rest_ ? rest(*block, bank) : roll(*block, bank);
+  if (at_rest_) rest(*block, bank);
+  const auto rolled = at_rest_ ? std::nullopt : roll(*block, bank);
+  return rolled && bank.collapsed() &&
+         cusum_.push(std::min(rolled->nis, rolled->gate), rolled->dof);
 }
 
 void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
@@ -74,17 +78,17 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
   }
 }
 
-void VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
-  if (!config_.non_holonomic || !bank.best().vehicle()) return;
+std::optional<UpdateOutcome> VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
+  if (!config_.non_holonomic || !bank.best().vehicle()) return std::nullopt;
   const double speed_mps = bank.best().estimate().nav.v_e_mps.norm();
-  if (speed_mps < config_.min_speed_mps) return;
+  if (speed_mps < config_.min_speed_mps) return std::nullopt;
   const double turn_radps =
       (block.mean_omega_ib_b_radps - bank.best().estimate().bias.b_g_radps).norm();
   double right_mps = std::hypot(config_.right_sigma_mps, config_.right_sigma_m * turn_radps);
   if (!bank.collapsed()) {
     right_mps = std::hypot(right_mps, kOpenHeadingRightMps + kOpenHeadingRightM * turn_radps);
   }
-  bank.update([&](Ekf& filter) {
+  return bank.update([&](Ekf& filter) {
     return filter.update(non_holonomic(filter.estimate(), filter.vehicle()->value,
                                        filter.inertial().omega_ib_b_radps(), right_mps,
                                        config_.down_sigma_m2ps2 / speed_mps));

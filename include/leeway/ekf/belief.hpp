@@ -31,7 +31,7 @@ void restart_motion(Belief& belief, const Eigen::Vector3d& r_e_m, const Eigen::M
 /// state is small beside another for its unit alone.
 void make_positive_definite(ErrorMatrix& P);
 
-/// 1 sigma of what a vehicle turns over a time in which nobody looks: at 0.5 rad/s, up to 1 rad.
+/// 1 sigma of what a vehicle turns over a time in which nobody looks: at 0.5 rad/s, up to 1.8 rad: anywhere.
 double unseen_turn_rad(double dt_s);
 
 /// Carries the belief over a time without IMU data: constant velocity relative to the Earth,

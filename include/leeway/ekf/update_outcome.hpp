@@ -21,6 +21,8 @@ struct UpdateOutcome {
   Eigen::Vector3d position_innovation_e_m{Eigen::Vector3d::Zero()};
   Eigen::Vector3d velocity_innovation_e_mps{Eigen::Vector3d::Zero()};
   double log_det_S{0.0};           ///< of the innovation's covariance; with the NIS, the likelihood
+  /// The whole fix was refused, and its position or its velocity alone corrected the state.
+  bool fused_in_part{false};
   bool covariance_positive{true};  ///< no diagonal element and no innovation variance <= 0
 };
 

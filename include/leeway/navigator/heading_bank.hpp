@@ -94,21 +94,22 @@ class HeadingBank {
   void visit(Archive& archive) {
     const Ekf any = best();
     for (std::optional<Ekf>& member : members_) archive.optional(member, any);
-    archive(log_weight_, count_, best_, last_evidence_);
+    archive(log_weight_, refused_, count_, best_, last_evidence_);
   }
 
  private:
   using Outcomes = std::array<UpdateOutcome, kMaxFilters>;
 
   void weigh(const Outcomes& outcomes);
-  double evidence_weight(const UpdateOutcome& outcome);
   std::size_t lightest_but_best() const;
   void normalize();
   void merge();
+  void join();
   void drop(std::size_t k);
 
   std::array<std::optional<Ekf>, kMaxFilters> members_{};
   std::array<double, kMaxFilters> log_weight_{};  // of the members that are left
+  std::array<bool, kMaxFilters> refused_{};       // the newest fix that another one fused
   std::size_t count_{0};
   std::size_t best_{0};
   std::array<std::optional<Time>, 7> last_evidence_{};  // by the components of the measurement

@@ -58,8 +58,8 @@ class NavigatorState {
   template <class Archive>
   void visit(Archive& archive) {
     archive(screen_, aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_,
-            last_update_, last_fused_, gate_recovery_, heading_doubted_, repairs_, resets_,
-            realignments_);
+            last_update_, last_fused_, gate_recovery_, heading_doubted_, contradicted_,
+            is_starting_beside_, repairs_, resets_, realignments_);
     archive.optional(bank_, any_bank());
   }
 
@@ -67,6 +67,7 @@ class NavigatorState {
   HeadingBank any_bank() const;
   Verdict take(const GnssFix& fix);
   Verdict use(const GnssFix& fix);
+  UpdateOutcome update(Ekf& filter, const GnssFix& fix) const;
   template <AidingReading R>
   Verdict take(const R& reading);
   void align(const GnssFix& fix);
@@ -77,7 +78,9 @@ class NavigatorState {
   Verdict settle(const GnssFix& fix, bool is_explained);
   void learn_noise(const GnssFix& fix);
   void challenge(const GnssFix& fix, double odds);
-  bool doubt_heading(Ekf restarted, const Ekf& doubting);
+  void start_beside(const GnssFix& fix);
+  bool was_opened(Time now) const;
+  bool doubt_heading(Ekf around, const Ekf& doubting);
   void learn_imu_noise(const GnssFix& fix);
   bool moves() const;
   bool motion_hides_heading(Time t) const;
@@ -96,6 +99,8 @@ class NavigatorState {
   std::optional<Time> last_fused_{};  // fix
   GateRecovery gate_recovery_;
   std::optional<Time> heading_doubted_{};
+  std::optional<Time> contradicted_{};  // the filter, by what it cannot explain
+  bool is_starting_beside_{false};  // the aligner, anew
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};
   std::uint32_t realignments_{0};

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "leeway/earth/time.hpp"
+#include "leeway/navigator/nis_cusum.hpp"
 
 namespace leeway {
 
@@ -31,12 +32,18 @@ class ReceiverNoise {
   /// Whether nis_ratio() is beyond what chance makes of so many fixes.
   bool is_inconsistent() const;
 
+  /// Whether the newest one made the last few larger than chance allows.
+  bool is_surprising() const { return is_surprising_; }
+
   /// Whether errors repeat themselves from fix to fix: over a full window the innovations change by
   /// less than half of what white errors of the claimed size would make them.
   bool errors_last() const;
 
   /// Whether nis_ratio() is the mean of a full window.
   bool has_full_window() const { return nis_count_ >= kWindow; }
+
+  /// Forgets how consistent the innovations were: another filter claims anew. The scale stays.
+  void begin_claims();
 
   /// Of three components judged with the present scale, fused or gated.
   /// @param innovation  measured - predicted
@@ -46,7 +53,7 @@ class ReceiverNoise {
   template <class Archive>
   void visit(Archive& archive) {
     archive(sigma_scale_, nis_ratio_, change_ratio_, nis_count_, change_count_, previous_,
-            previous_innovation_, surprises_);
+            previous_innovation_, surprises_, cusum_, is_surprising_);
   }
 
  private:
@@ -57,6 +64,8 @@ class ReceiverNoise {
   std::int64_t nis_count_{0};
   std::int64_t change_count_{0};
   std::optional<Time> previous_{};
+  NisCusum cusum_{};
+  bool is_surprising_{false};
   std::int64_t surprises_{0};  // changes in a row that are far beyond the claim
   Eigen::Vector3d previous_innovation_{Eigen::Vector3d::Zero()};
 };

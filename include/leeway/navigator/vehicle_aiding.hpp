@@ -2,9 +2,12 @@
 /// What is known of a vehicle without asking a receiver: that it stands, that it does not slide.
 #pragma once
 
+#include <optional>
+
 #include "leeway/earth/fields.hpp"
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/navigator/heading_bank.hpp"
+#include "leeway/navigator/nis_cusum.hpp"
 #include "leeway/navigator/standstill.hpp"
 #include "leeway/navigator/vehicle_kind.hpp"
 
@@ -83,7 +86,8 @@ class VehicleAiding {
   VehicleAiding(const VehicleConfig& config, const ImuErrorModel& imu);
 
   /// Right after the filters have been advanced by inc.
-  void push(const ImuIncrement& inc, HeadingBank& bank);
+  /// @returns whether the constraints contradict the only filter, beyond chance
+  bool push(const ImuIncrement& inc, HeadingBank& bank);
 
   bool at_rest() const { return at_rest_; }
 
@@ -93,12 +97,12 @@ class VehicleAiding {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(blocks_, standstill_, at_rest_, even_motion_s_);
+    archive(blocks_, standstill_, at_rest_, even_motion_s_, cusum_);
   }
 
  private:
   void rest(const ImuBlock& block, HeadingBank& bank) const;
-  void roll(const ImuBlock& block, HeadingBank& bank) const;
+  std::optional<UpdateOutcome> roll(const ImuBlock& block, HeadingBank& bank) const;
 
   VehicleConfig config_;
   double gyro_noise_rad_per_sqrt_s_;
@@ -106,6 +110,7 @@ class VehicleAiding {
   StandstillDetector standstill_;
   bool at_rest_{false};
   double even_motion_s_{0.0};
+  NisCusum cusum_{};
 };
 
 }  // namespace leeway

@@ -16,6 +16,7 @@ enum class Verdict : std::uint8_t {
   kAligning,     ///< taken for alignment; there is no solution yet
   kFused,        ///< the measurement corrected the state
   kGated,        ///< it was too far from the prediction for both to be right
+  kPartly,       ///< so was one of position and velocity; the other corrected the state
   kReset,        ///< the gate had locked out fixes that agree: position and velocity begin anew
   kGap,          ///< IMU data was missing for longer than max_gap_s: it was bridged
   kLate,         ///< older than what is kept to go back to
@@ -30,10 +31,9 @@ enum class Verdict : std::uint8_t {
   kOverflow,     ///< more measurements wait than there is room for
 };
 constexpr auto names(Verdict) {
-  return std::array{"accepted",   "aligning", "fused",      "gated",        "reset",
-                    "gap",        "late",     "duplicate",  "repeated",     "out_of_order",
-                    "future",     "clock_jump", "unused",   "not_finite",   "implausible",
-                    "overflow"};
+  return std::array{"accepted", "aligning",     "fused",  "gated",      "partly", "reset",
+                    "gap",      "late",         "duplicate", "repeated", "out_of_order", "future",
+                    "clock_jump", "unused",     "not_finite", "implausible", "overflow"};
 }
 
 inline constexpr std::size_t kVerdicts = kAll<Verdict>.size();

@@ -1,0 +1,20 @@
+#include "leeway/navigator/nis_cusum.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace leeway {
+
+bool NisCusum::push(double nis, int dof) {
+  constexpr double kVarianceRatio = 4.0;
+  constexpr double kAlarm = 12.0;
+  const double log_ratio =
+      0.5 * ((1.0 - 1.0 / kVarianceRatio) * nis - dof * std::log(kVarianceRatio));
+  if (!std::isfinite(log_ratio)) return false;
+  sum_ = std::max(0.0, sum_ + log_ratio);
+  if (sum_ < kAlarm) return false;
+  sum_ = 0.0;
+  return true;
+}
+
+}  // namespace leeway
