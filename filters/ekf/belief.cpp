@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/covariance/transition.hpp"
@@ -16,18 +17,22 @@ constexpr double kBridgeMaxTurnRad = 1.8;  // anywhere on the circle: pi / sqrt(
 constexpr double kBridgeTiltRad = 0.1;     // roads lean; they do not turn vehicles over
 constexpr double kBridgeAccelerationMps2 = 3.0;
 
-/// Adds what a vehicle may have done over a time in which nobody looked.
-void add_unseen_motion(ErrorMatrix& P, const NavState& nav, double dt_s, double turn_rad) {
-  const double tilt_rad = std::min(unseen_turn_rad(dt_s), kBridgeTiltRad);
-  const double velocity_mps = kBridgeAccelerationMps2 * dt_s;
-  const double position_m = 0.5 * velocity_mps * dt_s;
-  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(nav.r_e_m));
-  const Eigen::Vector3d psi_n(tilt_rad, tilt_rad, turn_rad);
-  P.block<3, 3>(kPsi, kPsi) += C_en * psi_n.cwiseAbs2().asDiagonal() * C_en.transpose();
-  P.diagonal().segment<3>(kDv).array() += velocity_mps * velocity_mps;
-  P.diagonal().segment<3>(kDr).array() += position_m * position_m;
-  P.block<3, 3>(kDv, kDr).diagonal().array() += velocity_mps * position_m;
-  P.block<3, 3>(kDr, kDv).diagonal().array() += velocity_mps * position_m;
+/// Adds what a vehicle may have done over the last dt_s of a time in which nobody looked.
+void add_unseen_motion(ErrorMatrix& P, const Eigen::Vector3d& r_e_m, double dt_s, double before_s) {
+  const auto added = [&](auto&& sigma) {
+    return std::pow(sigma(before_s + dt_s), 2) - std::pow(sigma(before_s), 2);
+  };
+  const double turn_rad2 = added(unseen_turn_rad);
+  const double tilt_rad2 =
+      added([](double t_s) { return std::min(kBridgeTurnRadps * t_s, kBridgeTiltRad); });
+  const double velocity_m2ps2 = added([](double t_s) { return kBridgeAccelerationMps2 * t_s; });
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
+  const Eigen::Vector3d psi_n_rad2(tilt_rad2, tilt_rad2, turn_rad2);
+  P.block<3, 3>(kPsi, kPsi) += C_en * psi_n_rad2.asDiagonal() * C_en.transpose();
+  P.diagonal().segment<3>(kDv).array() += velocity_m2ps2;
+  P.diagonal().segment<3>(kDr).array() += velocity_m2ps2 * dt_s * dt_s / 3.0;
+  P.block<3, 3>(kDv, kDr).diagonal().array() += 0.5 * velocity_m2ps2 * dt_s;
+  P.block<3, 3>(kDr, kDv).diagonal().array() += 0.5 * velocity_m2ps2 * dt_s;
 }
 
 }  // namespace
@@ -65,7 +70,7 @@ void make_positive_definite(ErrorMatrix& P) {
   P = (0.5 * (P + P.transpose())).eval();
 }
 
-void bridge(Belief& belief, Time to, const ProcessNoise& noise, double turn_sigma_rad) {
+void bridge(Belief& belief, Time to, const ProcessNoise& noise, double before_s) {
   NavState& nav = belief.estimate.nav;
   const double dt_s = to_seconds(to - nav.time);
   nav.r_e_m += dt_s * nav.v_e_mps;
@@ -75,7 +80,7 @@ void bridge(Belief& belief, Time to, const ProcessNoise& noise, double turn_sigm
   Phi.r.middleCols<3>(kDv) = dt_s * Eigen::Matrix3d::Identity();
   propagate(belief.P, Phi, noise);
   if (belief.vehicle) propagate(*belief.vehicle, Phi);
-  add_unseen_motion(belief.P, nav, dt_s, turn_sigma_rad);
+  add_unseen_motion(belief.P, nav.r_e_m, dt_s, before_s);
 }
 
 bool is_sane(const Estimate& estimate, const ErrorMatrix& P) {

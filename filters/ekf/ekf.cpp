@@ -9,9 +9,9 @@ namespace leeway {
 
 template class BasicEkf<SymmetricKernel<double>>;
 
-void bridge(Ekf& filter, Time to, double turn_sigma_rad) {
+void bridge(Ekf& filter, Time to, double before_s) {
   edit(filter, [&](Belief& belief) {
-    bridge(belief, to, filter.inertial().noise(), turn_sigma_rad);
+    bridge(belief, to, filter.inertial().noise(), before_s);
   });
 }
 

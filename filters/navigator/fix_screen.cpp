@@ -1,5 +1,6 @@
 #include "leeway/navigator/fix_screen.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
@@ -8,8 +9,8 @@ namespace leeway {
 namespace {
 
 constexpr double kMovesMps = 0.5;
-constexpr double kFloorM = 1e-3;  // carrier phase noise: a hundredth of 19 cm
-constexpr double kFloorMps = 1e-3;
+constexpr double kLeastM = 1e-3;  // carrier phase noise: a hundredth of 19 cm
+constexpr double kLeastMps = 1e-3;
 
 /// Latitude and longitude zero to a centimetre.
 bool is_null_island(const Eigen::Vector3d& r_e_m) {
@@ -17,10 +18,15 @@ bool is_null_island(const Eigen::Vector3d& r_e_m) {
   return std::abs(r_e_m.y()) < kSameM && std::abs(r_e_m.z()) < kSameM && r_e_m.x() > 0.0;
 }
 
-/// R, raised as a whole when one of its axes falls below the floor.
-Eigen::Matrix3d raised(const Eigen::Matrix3d& R, double floor) {
-  if (R.diagonal().minCoeff() >= floor * floor) return R;
-  return R + floor * floor * Eigen::Matrix3d::Identity();
+/// Raises R as a whole when one of its axes falls below the floor, which follows the claims.
+void raise(Eigen::Matrix3d& R, double least, double& floor) {
+  constexpr double kImprovement = 3.0;  // from fix to fix
+  constexpr double kDecline = 2.0;      // one bad claim does not spoil the good ones after it
+  const double claimed = std::sqrt(std::max(0.0, R.diagonal().minCoeff()));
+  const double believed = std::max({claimed, least, floor});
+  if (believed > claimed) R += (believed * believed - claimed * claimed) * Eigen::Matrix3d::Identity();
+  const double highest = floor > 0.0 ? kDecline * kImprovement * floor : believed;
+  floor = std::min(believed, highest) / kImprovement;
 }
 
 }  // namespace
@@ -38,10 +44,10 @@ FixScreen::Finding FixScreen::judge(const GnssFix& fix, bool moves) {
   return Finding::kNews;
 }
 
-GnssFix with_floor(const GnssFix& fix) {
+GnssFix FixScreen::with_floor(const GnssFix& fix) {
   GnssFix result = fix;
-  if (result.position) result.position->R_e_m2 = raised(result.position->R_e_m2, kFloorM);
-  if (result.velocity) result.velocity->R_e_m2ps2 = raised(result.velocity->R_e_m2ps2, kFloorMps);
+  if (fix.position) raise(result.position->R_e_m2, kLeastM, floor_m_);
+  if (fix.velocity) raise(result.velocity->R_e_m2ps2, kLeastMps, floor_mps_);
   return result;
 }
 

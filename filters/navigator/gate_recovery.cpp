@@ -95,29 +95,38 @@ Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal
   constexpr double kLargestWidening = 100.0;  // of variances: ten times the sigma
   constexpr double kNoise = 2.0;              // on the sigma of the IMU's noise
   // Where the vehicle is comes first. Attitude and biases are doubted when that did not do.
-  const bool is_second = filter.inertial().noise_scale() > 1.0;
+  const double scale = filter.inertial().noise_scale();
   const double widening =
-      is_second ? std::clamp(refusal.nis / refusal.gate, 2.0, kLargestWidening) : 1.0;
-  const Eigen::Matrix3d unseen =
-      unseen_mps * unseen_mps * Eigen::Matrix3d::Identity();
+      scale > 1.0 ? std::clamp(refusal.nis / refusal.gate, 2.0, kLargestWidening) : 1.0;
   const auto& [nav, bias] = filter.estimate();
   const Eigen::Vector3d& lever_b_m = filter.inertial().config().lever_arm_b_m;
+  const Eigen::Vector3d r_e_m = fix.position->r_e_m - nav.q_eb * lever_b_m;
+  Ekf rival = filter;
+  if (refuses_position_alone(refusal)) {
+    edit(rival, [&](Belief& belief) {
+      const Eigen::Matrix3d P_vv = belief.P.block<3, 3>(kDv, kDv);
+      restart_motion(belief, r_e_m, fix.position->R_e_m2, nav.v_e_mps, P_vv);
+    });
+    return rival;
+  }
+  const Eigen::Matrix3d unseen = unseen_mps * unseen_mps * Eigen::Matrix3d::Identity();
   const Eigen::Vector3d antenna_e_mps =
       antenna_velocity_e(filter.estimate(), lever_b_m, filter.inertial().omega_ib_b_radps());
-  const Eigen::Vector3d r_e_m = fix.position->r_e_m - nav.q_eb * lever_b_m;
   const Eigen::Vector3d v_e_mps =
       fix.velocity ? Eigen::Vector3d(fix.velocity->v_e_mps - antenna_e_mps + nav.v_e_mps)
                    : nav.v_e_mps;
-  Ekf rival = filter;
   edit(rival, [&](Belief& belief) {
     widen(belief, widening);
     hold_below(belief.P, kPsi, kLargestTurnRad);
     restart_motion(belief, r_e_m, fix.position->R_e_m2, v_e_mps,
                    fix.velocity ? fix.velocity->R_e_m2ps2 : unseen);
   });
-  rival.scale_imu_noise(
-      std::min(kNoise * filter.inertial().noise_scale(), kLargestImuScale));
+  rival.scale_imu_noise(std::min(kNoise * scale, kLargestImuScale));
   return rival;
+}
+
+bool refuses_position_alone(const UpdateOutcome& refusal) {
+  return refusal.fused_in_part && refusal.position_nis > refusal.velocity_nis;
 }
 
 }  // namespace leeway

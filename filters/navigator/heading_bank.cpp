@@ -109,6 +109,11 @@ double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
 
 void HeadingBank::weigh(const Outcomes& outcomes) {
   using Outcome = UpdateOutcome::Outcome;
+  const auto refused_before = refused_;
+  for (std::size_t k = 0; k < kMaxFilters; ++k) {
+    if (outcomes[k].dof >= kFixDof) refused_[k] = outcomes[k].outcome == Outcome::kGated;
+  }
+  if (collapsed()) return;
   const auto is_fused = [](const UpdateOutcome& r) { return r.outcome == Outcome::kFused; };
   const auto fused = std::find_if(outcomes.begin(), outcomes.end(), is_fused);
   if (fused == outcomes.end()) return;
@@ -132,9 +137,7 @@ void HeadingBank::weigh(const Outcomes& outcomes) {
       continue;
     }
     log_weight_[k] *= 1.0 - weight / kMemory;
-    const bool refuses_again = refuses && refused_[k];
-    if (fused->dof >= kFixDof) refused_[k] = refuses;
-    if (are_rivals && refuses_again) {
+    if (are_rivals && refuses && refused_before[k]) {
       log_weight_[k] -= kErrorEndsPerS * since_s;
       surprise[k] = std::numeric_limits<double>::lowest();
       continue;
@@ -206,6 +209,7 @@ void HeadingBank::challenge(const Ekf& rival, double odds, std::size_t max_count
   std::size_t free = 0;
   while (members_[free]) ++free;
   members_[free].emplace(rival);
+  refused_[free] = false;
   log_weight_[free] = log_weight_[best_] + std::log(odds);
   ++count_;
   normalize();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <variant>
 
 #include "filters/navigator/heading_spread.hpp"
@@ -20,6 +21,8 @@ EkfConfig filter_of(const NavigatorConfig& config) {
 
 Aligner aligner_of(const NavigatorConfig& config) {
   AlignmentConfig alignment = config.alignment;
+  alignment.sideslip_rad =
+      std::hypot(alignment.sideslip_rad, limits_of(config.vehicle.kind).drift_rad);
   // A bank of headings with the non-holonomic constraint finds the course as the heading by itself,
   // slip and turns included.
   if (!config.C_bs || config.vehicle.non_holonomic ||
@@ -61,6 +64,7 @@ NavigatorState::NavigatorState(const NavigatorConfig& config)
     : config_(config),
       aligner_(aligner_of(config)),
       aiding_(config.vehicle, config.filter.imu),
+      course_(config.alignment.sideslip_rad, limits_of(config.vehicle.kind).drift_rad),
       C_bs_(config.C_bs),
       gate_recovery_(limits_of(config.vehicle.kind)) {
   validate(config);
@@ -98,6 +102,11 @@ void NavigatorState::begin_vehicle() {
 void NavigatorState::integrate(const ImuIncrement& inc) {
   const ImuIncrement in_body = C_bs_ ? turned(inc, *C_bs_) : inc;
   if (!bank_) return aligner_.push(in_body);
+  if (imu_screen_.is_held(inc) && moves()) {
+    contradicted_ = inc.time;
+    return bridge(inc.time);
+  }
+  end_hole();
   if (is_starting_beside_) aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
   const bool rested = aiding_.at_rest();
@@ -124,16 +133,19 @@ void NavigatorState::bridge(Time to) {
     return;
   }
   const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
-  double turn_rad = unseen_turn_rad(dt_s);
-  if (config_.vehicle.non_holonomic && bank_->collapsed()) {
-    // The course turns along. In one linear filter the constraint would tell the one by the other,
-    // and both are as wrong.
-    const double sigma_rad = std::hypot(heading_sigma_rad(bank_->best()), turn_rad);
-    auto headings = bank_of_headings(bank_->best(), sigma_rad, dt_s);
-    if (headings) bank_ = *headings;
-    if (headings) turn_rad = 0.0;
+  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, hole_s_); });
+  hole_s_ += dt_s;
+}
+
+// The course has turned along with the heading. In one linear filter the constraint would tell the
+// one by the other, and both are as wrong.
+void NavigatorState::end_hole() {
+  const double hole_s = std::exchange(hole_s_, 0.0);
+  if (hole_s == 0.0 || !config_.vehicle.non_holonomic || !bank_->collapsed()) return;
+  const Ekf& filter = bank_->best();
+  if (const auto headings = bank_of_headings(filter, heading_sigma_rad(filter), hole_s)) {
+    bank_ = *headings;
   }
-  bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, turn_rad); });
 }
 
 Verdict NavigatorState::fuse(const Reading& reading) {
@@ -179,7 +191,7 @@ Verdict NavigatorState::take(const GnssFix& fix) {
     case FixScreen::Finding::kNews:
       break;
   }
-  return use(with_floor(fix));
+  return use(screen_.with_floor(fix));
 }
 
 Verdict NavigatorState::use(const GnssFix& fix) {
@@ -187,9 +199,10 @@ Verdict NavigatorState::use(const GnssFix& fix) {
     align(fix);
     return Verdict::kAligning;
   }
+  end_hole();
   if (heading_sigma_rad(bank_->best()) > kOpenRad) open_heading();
   const bool was_refused = gate_recovery_.is_row();
-  const Ekf* best = &bank_->best();
+  if (!was_refused) incumbent_ = bank_->best_index();
   bool is_explained = false;  // by any of the filters
   last_update_ = bank_->update([&](Ekf& filter) {
     const UpdateOutcome outcome = update(filter, fix);
@@ -197,7 +210,7 @@ Verdict NavigatorState::use(const GnssFix& fix) {
     return outcome;
   });
   Verdict verdict = settle(fix, is_explained);
-  if (was_refused && verdict == Verdict::kFused && best != &bank_->best()) {
+  if (was_refused && verdict == Verdict::kFused && incumbent_ != bank_->best_index()) {
     ++resets_;
     contradicted_ = fix.time;
     gate_recovery_.begin(fix.time);
@@ -213,6 +226,7 @@ Verdict NavigatorState::use(const GnssFix& fix) {
     if (!repair_covariance(filter)) ++repairs_;
   });
   if (!C_bs_) find_mount();
+  watch_course(fix);
   start_beside(fix);
   return verdict;
 }
@@ -234,9 +248,20 @@ void NavigatorState::start_beside(const GnssFix& fix) {
   bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
                       found->turn_sigma_rad);
   if (C_bs_) begin_vehicle();
-  bank_->challenge(filter, 1.0, HeadingBank::kMaxFilters);
+  // That an IMU is so many times as noisy is so many times squared less likely.
+  const double scale = filter.inertial().noise_scale();
+  bank_->challenge(filter, 1.0 / (scale * scale), HeadingBank::kMaxFilters);
   heading_doubted_ = fix.time;
   is_starting_beside_ = false;
+}
+
+void NavigatorState::watch_course(const GnssFix& fix) {
+  const bool tells = limits_of(config_.vehicle.kind).goes_where_it_points && C_bs_ &&
+                     bank_->collapsed();
+  if (!tells || !fix.velocity || last_update_.outcome != UpdateOutcome::Outcome::kFused) return;
+  if (!course_.push(fix, bank_->best())) return;
+  contradicted_ = fix.time;
+  doubt_heading(bank_->best(), bank_->best());
 }
 
 bool NavigatorState::was_opened(Time now) const {
@@ -292,18 +317,25 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   return Verdict::kFused;
 }
 
+bool NavigatorState::is_white(const GnssFix& fix) const {
+  return config_.filter.gnss_correlation_s == 0.0 || has_white_error(fix);
+}
+
 void NavigatorState::learn_noise(const GnssFix& fix) {
   const UpdateOutcome& u = last_update_;
   bool is_surprising = false;
-  const auto note = [&](ReceiverNoise& noise, const auto& innovation, const auto& R, double nis) {
-    noise.note(fix.time, innovation, R, nis);
+  const auto note = [&](ReceiverNoise& noise, const auto& innovation, const auto& R, double nis,
+                        bool is_white) {
+    noise.note(fix.time, innovation, R, nis, is_white);
     is_surprising = is_surprising || noise.is_surprising();
   };
   if (fix.velocity) {
-    note(velocity_noise_, u.velocity_innovation_e_mps, fix.velocity->R_e_m2ps2, u.velocity_nis);
+    note(velocity_noise_, u.velocity_innovation_e_mps, fix.velocity->R_e_m2ps2, u.velocity_nis,
+         true);
   }
   if (fix.position) {
-    note(position_noise_, u.position_innovation_e_m, fix.position->R_e_m2, u.position_nis);
+    note(position_noise_, u.position_innovation_e_m, fix.position->R_e_m2, u.position_nis,
+         is_white(fix));
   }
   if (is_surprising) contradicted_ = fix.time;
   // Positions that keep away from the prediction by more than both claim, and agree with each
@@ -322,16 +354,16 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   constexpr double kUpS = 30.0;
   constexpr double kDownS = 300.0;  // times the squared ratio: what is far too wide is plain
   constexpr double kShortestDownS = 10.0;
-  constexpr double kBeyondChance = 1.5;  // 90 degrees of freedom stay below with 99.8 %
+  constexpr double kBeyondChance = 2.0;  // 30 degrees of freedom stay below with 99.9 %
   constexpr double kSteepestRatio = 4.0;
   Ekf& filter = bank_->best();
   const double dt_s = std::clamp(to_seconds(fix.time - last_fused_.value_or(fix.time)), 0.0, kUpS);
   // A slow error of the receiver's positions would be taken for the IMU's.
   const double position_ratio =
-      filter.inertial().config().gnss_correlation_s == 0.0 || has_white_error(fix)
-          ? position_noise_.nis_ratio()
+      is_white(fix)
+          ? position_noise_.recent_nis_ratio()
           : 0.0;
-  const double ratio = std::max(position_ratio, velocity_noise_.nis_ratio());
+  const double ratio = std::max(position_ratio, velocity_noise_.recent_nis_ratio());
   double scale = filter.inertial().noise_scale();
   if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);
   const double down_s = std::max(kShortestDownS, kDownS * ratio * ratio);
@@ -350,7 +382,7 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   };
   const Ekf& doubting = bank_->most_doubting();
   const double scale = doubting.inertial().noise_scale();
-  const bool is_repeated = gate_recovery_.is_repeated();
+  const bool is_repeated = gate_recovery_.is_repeated() && !refuses_position_alone(last_update_);
   if (is_repeated && doubt_heading(rival(bank_->best()), rival(doubting))) return;
   if (bank_->count() > HeadingBank::kMaxRivals) {
     if (is_repeated && !last_update_.fused_in_part) {

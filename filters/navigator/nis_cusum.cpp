@@ -7,7 +7,7 @@ namespace leeway {
 
 bool NisCusum::push(double nis, int dof) {
   constexpr double kVarianceRatio = 4.0;
-  constexpr double kAlarm = 12.0;
+  constexpr double kAlarm = 10.0;
   const double log_ratio =
       0.5 * ((1.0 - 1.0 / kVarianceRatio) * nis - dof * std::log(kVarianceRatio));
   if (!std::isfinite(log_ratio)) return false;

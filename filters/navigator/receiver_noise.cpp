@@ -10,6 +10,8 @@ namespace leeway {
 namespace {
 
 constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
+constexpr double kLastingSurprise = 16.3;  // 1e-3: of errors that last 30 s once in 8 h
+constexpr double kRecentFixes = 10.0;
 constexpr double kLargestNis = 30.0;         // one alone is no reason to doubt
 constexpr double kLargestNisRatio = 25.0;   // two outliers in a row shall not count for ever
 constexpr double kInconsistentRatio = 2.0;  // by a full window: once in 1e7
@@ -40,16 +42,34 @@ bool ReceiverNoise::errors_last() const {
 }
 
 void ReceiverNoise::begin_claims() {
-  nis_ratio_ = 1.0;
+  nis_ratio_ = recent_nis_ratio_ = 1.0;
   nis_count_ = 0;
   cusum_ = NisCusum{};
+  mean_.setZero();
   is_surprising_ = false;
 }
 
+// The innovations of a right filter have no mean. Whitened by R they have the direction, by S the
+// length.
+void ReceiverNoise::note_mean(const Eigen::Vector3d& by_R, double nis) {
+  constexpr double kShare = 0.125;                            // of the newest
+  constexpr double kVariance = kShare / (2.0 - kShare);       // of each component of the mean
+  constexpr double kBeyondChance = 31.0;                      // 3 degrees of freedom: 1e-6
+  const double length = std::sqrt(std::min(nis, kLargestNis));
+  mean_ += kShare * (length * by_R.normalized() - mean_);
+  if (mean_.squaredNorm() < kBeyondChance * kVariance) return;
+  is_surprising_ = true;
+  mean_.setZero();
+}
+
 void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
-                         double nis) {
+                         double nis, bool is_white) {
   average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestNisRatio));
-  is_surprising_ = cusum_.push(std::min(nis, kLargestNis), 3);
+  recent_nis_ratio_ +=
+      (std::min(nis / 3.0, kLargestNisRatio) - recent_nis_ratio_) / kRecentFixes;
+  is_surprising_ =
+      is_white ? cusum_.push(std::min(nis, kLargestNis), 3) : nis > kLastingSurprise;
+  if (is_white) note_mean(R.llt().matrixL().solve(innovation), nis);
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;
   previous_ = t;

@@ -37,9 +37,9 @@ double unseen_turn_rad(double dt_s);
 /// Carries the belief over a time without IMU data: constant velocity relative to the Earth,
 /// attitude held in the Earth-fixed frame. Its uncertainty grows as that of a vehicle that may
 /// turn, lean at 0.5 rad/s up to 0.1 rad, and accelerate at 3 m/s^2 (1 sigma).
-/// @param turn_sigma_rad  of the turn that nobody saw, about the vertical
+/// @param before_s  how long nobody had looked before: what is unseen goes on
 /// @pre to > belief.estimate.nav.time.
-void bridge(Belief& belief, Time to, const ProcessNoise& noise, double turn_sigma_rad);
+void bridge(Belief& belief, Time to, const ProcessNoise& noise, double before_s);
 
 /// Whether estimate and covariance are numbers of a size that arithmetic can bear.
 bool is_sane(const Estimate& estimate, const ErrorMatrix& P);

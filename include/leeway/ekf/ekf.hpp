@@ -131,7 +131,7 @@ void edit(Ekf& filter, F&& f) {
 }
 
 /// bridge() of what the filter believes. @pre to > filter.estimate().nav.time.
-void bridge(Ekf& filter, Time to, double turn_sigma_rad);
+void bridge(Ekf& filter, Time to, double before_s = 0.0);
 
 /// 1 sigma of the attitude error about the vertical, rad; of the last propagation.
 double heading_sigma_rad(const Ekf& filter);

@@ -22,19 +22,22 @@ class FixScreen {
   /// numbers twice
   Finding judge(const GnssFix& fix, bool moves);
 
+  /// The fix with no sigma below 1 mm and 1 mm/s in any direction: no receiver does better. Nor is
+  /// it believed to do better than a third of what it claimed before: a receiver that improves goes
+  /// on to claim so, a slip of the log does not.
+  GnssFix with_floor(const GnssFix& fix);
+
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(position_, velocity_);
+    archive(position_, velocity_, floor_m_, floor_mps_);
   }
 
  private:
   std::optional<Eigen::Vector3d> position_{};  // of the newest news, by part
   std::optional<Eigen::Vector3d> velocity_{};
+  double floor_m_{0.0};  // a third of what was last believed
+  double floor_mps_{0.0};
 };
-
-/// The fix with no sigma below 1 mm and 1 mm/s in any direction: no receiver does better. A smaller
-/// claim is a slip of the log, and would outweigh everything else.
-GnssFix with_floor(const GnssFix& fix);
 
 }  // namespace leeway

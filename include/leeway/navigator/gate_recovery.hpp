@@ -65,7 +65,12 @@ class GateRecovery {
   std::optional<GnssFix> rival_{};
 };
 
-/// The filter as it is if the fix is right: position and velocity anew, as the fix has them, and an
+/// Whether the fix's velocity was fused and its position was not: neither attitude nor IMU is in
+/// doubt.
+bool refuses_position_alone(const UpdateOutcome& refusal);
+
+/// The filter as it is if the fix is right. Where the position alone was refused, that begins anew.
+/// Else position and velocity anew, as the fix has them, and an
 /// attitude, biases and an IMU as much less certain as the refusal suggests. A velocity that the
 /// fix lacks is the filter's own, with as much sigma as the vehicle can have changed it by.
 /// @param unseen_mps  1 sigma of that

@@ -63,7 +63,7 @@ class HeadingBank {
     for (std::size_t k = 0; k < kMaxFilters; ++k) {
       if (members_[k]) outcomes[k] = f(*members_[k]);
     }
-    if (!collapsed()) weigh(outcomes);
+    weigh(outcomes);
     return outcomes[best_];
   }
 
@@ -74,6 +74,9 @@ class HeadingBank {
 
   bool collapsed() const { return count_ == 1; }
   std::size_t count() const { return count_; }
+
+  /// Which of the members best() is.
+  std::size_t best_index() const { return best_; }
 
   /// The heaviest member.
   const Ekf& best() const { return *members_[best_]; }
@@ -109,7 +112,7 @@ class HeadingBank {
 
   std::array<std::optional<Ekf>, kMaxFilters> members_{};
   std::array<double, kMaxFilters> log_weight_{};  // of the members that are left
-  std::array<bool, kMaxFilters> refused_{};       // the newest fix that another one fused
+  std::array<bool, kMaxFilters> refused_{};       // the newest fix
   std::size_t count_{0};
   std::size_t best_{0};
   std::array<std::optional<Time>, 7> last_evidence_{};  // by the components of the measurement

@@ -3,15 +3,18 @@
 /// order of time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/alignment.hpp"
+#include "leeway/navigator/course_monitor.hpp"
 #include "leeway/navigator/fix_screen.hpp"
 #include "leeway/navigator/gate_recovery.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/health.hpp"
+#include "leeway/navigator/imu_screen.hpp"
 #include "leeway/navigator/mount_estimator.hpp"
 #include "leeway/navigator/navigator_config.hpp"
 #include "leeway/navigator/receiver_noise.hpp"
@@ -57,8 +60,8 @@ class NavigatorState {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(screen_, aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_,
-            last_update_, last_fused_, gate_recovery_, heading_doubted_, contradicted_,
+    archive(imu_screen_, hole_s_, screen_, aligner_, aiding_, course_, mount_, position_noise_, velocity_noise_, C_bs_,
+            last_update_, last_fused_, gate_recovery_, incumbent_, heading_doubted_, contradicted_,
             is_starting_beside_, repairs_, resets_, realignments_);
     archive.optional(bank_, any_bank());
   }
@@ -74,10 +77,13 @@ class NavigatorState {
   void begin(const HeadingBank& bank);
   void begin_vehicle();
   void find_mount();
+  void end_hole();
   void open_heading();
   Verdict settle(const GnssFix& fix, bool is_explained);
+  bool is_white(const GnssFix& fix) const;
   void learn_noise(const GnssFix& fix);
   void challenge(const GnssFix& fix, double odds);
+  void watch_course(const GnssFix& fix);
   void start_beside(const GnssFix& fix);
   bool was_opened(Time now) const;
   bool doubt_heading(Ekf around, const Ekf& doubting);
@@ -87,9 +93,12 @@ class NavigatorState {
   void realign();
 
   NavigatorConfig config_;
+  ImuScreen imu_screen_{};
+  double hole_s_{0.0};  // without IMU data, up to now
   FixScreen screen_{};
   Aligner aligner_;
   VehicleAiding aiding_;
+  CourseMonitor course_;
   MountEstimator mount_{};
   ReceiverNoise position_noise_{1.0};  // its errors are those of the fix before
   ReceiverNoise velocity_noise_{0.5};
@@ -98,6 +107,7 @@ class NavigatorState {
   UpdateOutcome last_update_{};
   std::optional<Time> last_fused_{};  // fix
   GateRecovery gate_recovery_;
+  std::size_t incumbent_{0};  // the best filter before the fixes that are refused
   std::optional<Time> heading_doubted_{};
   std::optional<Time> contradicted_{};  // the filter, by what it cannot explain
   bool is_starting_beside_{false};  // the aligner, anew

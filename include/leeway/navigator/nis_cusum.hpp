@@ -5,7 +5,7 @@
 namespace leeway {
 
 /// Page's cumulative sum test of the claimed innovation covariance against four times as much.
-/// Where the claim holds it errs once in 160,000 measurements or less often: Lorden's bound, e^12.
+/// Where the claim holds it errs once in 22,000 measurements or less often: Lorden's bound, e^10.
 /// Source: Page (1954), Biometrika 41; Basseville and Nikiforov (1993), section 2.2.
 class NisCusum {
  public:

@@ -29,6 +29,9 @@ class ReceiverNoise {
   /// Mean of nis / dof over the last 30 fixes or so, by the scaled claim; 1 before any.
   double nis_ratio() const { return nis_ratio_; }
 
+  /// The same over the last 10 fixes or so.
+  double recent_nis_ratio() const { return recent_nis_ratio_; }
+
   /// Whether nis_ratio() is beyond what chance makes of so many fixes.
   bool is_inconsistent() const;
 
@@ -48,23 +51,30 @@ class ReceiverNoise {
   /// Of three components judged with the present scale, fused or gated.
   /// @param innovation  measured - predicted
   /// @param R           as claimed, not scaled
-  void note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, double nis);
+  /// @param is_white    whether the receiver's errors differ from fix to fix: else a row of them is as
+  ///                    one, and no surprise
+  void note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, double nis,
+            bool is_white);
 
   template <class Archive>
   void visit(Archive& archive) {
-    archive(sigma_scale_, nis_ratio_, change_ratio_, nis_count_, change_count_, previous_,
-            previous_innovation_, surprises_, cusum_, is_surprising_);
+    archive(sigma_scale_, nis_ratio_, recent_nis_ratio_, change_ratio_, nis_count_, change_count_,
+            previous_, previous_innovation_, surprises_, cusum_, mean_, is_surprising_);
   }
 
  private:
+  void note_mean(const Eigen::Vector3d& by_R, double nis);
+
   double smallest_;
   double sigma_scale_{1.0};
   double nis_ratio_{1.0};
+  double recent_nis_ratio_{1.0};
   double change_ratio_{1.0};  // of squared changes to what the claim lets expect
   std::int64_t nis_count_{0};
   std::int64_t change_count_{0};
   std::optional<Time> previous_{};
   NisCusum cusum_{};
+  Eigen::Vector3d mean_{Eigen::Vector3d::Zero()};  // of the innovations, in their own sigmas
   bool is_surprising_{false};
   std::int64_t surprises_{0};  // changes in a row that are far beyond the claim
   Eigen::Vector3d previous_innovation_{Eigen::Vector3d::Zero()};

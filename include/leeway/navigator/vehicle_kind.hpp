@@ -27,6 +27,7 @@ struct VehicleLimits {
   bool goes_where_it_points{true};
   double speed_mps{400.0};         ///< over ground
   double acceleration_mps2{20.0};  ///< in any direction, for a second and more
+  double drift_rad{0.0};  ///< 1 sigma of course against heading by wind: a fifth of the airspeed
 };
 
 /// Limits of a kind: tyres hold 1 g, a multirotor's thrust is 3 g, an aerobatic wing bears 9 g.
@@ -41,7 +42,7 @@ constexpr VehicleLimits limits_of(VehicleKind kind) {
     case VehicleKind::kBoat:
       return {false, 60.0, 10.0};
     case VehicleKind::kAircraft:
-      return {true, 1000.0, 90.0};
+      return {true, 1000.0, 90.0, 0.2};
     case VehicleKind::kNone:
       break;
   }

@@ -1,0 +1,49 @@
+#include "leeway/navigator/course_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "leeway/earth/earth.hpp"
+#include "leeway/earth/rotation.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kLeastSpeedMps = 5.0;  // a car backs more slowly
+constexpr double kLearnS = 60.0;
+constexpr double kSteadyRad = 0.01;     // change of mount and slip on a straight
+constexpr double kAxleM = 2.0;          // antenna to rear axle: in a turn it goes sideways
+constexpr double kLargestNis = 25.0;    // one alone is no reason to doubt
+
+}  // namespace
+
+bool CourseMonitor::push(const GnssFix& fix, const Ekf& filter) {
+  const Estimate& estimate = filter.estimate();
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).transpose();
+  const Eigen::Vector3d v_n = C_ne * fix.velocity->v_e_mps;
+  const double speed_mps = v_n.head<2>().norm();
+  if (speed_mps < kLeastSpeedMps) return false;
+  const Eigen::Vector3d forward_n = C_ne * (estimate.nav.q_eb * Eigen::Vector3d::UnitX());
+  const double difference_rad =
+      wrap_pi(std::atan2(v_n.y(), v_n.x()) - std::atan2(forward_n.y(), forward_n.x()));
+  const double turn_radps =
+      (filter.inertial().mean_omega_ib_b_radps() - estimate.bias.b_g_radps).norm();
+  const double course_rad =
+      std::hypot(std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff()), kAxleM * turn_radps) /
+      speed_mps;
+  const double change_rad = wrap_pi(difference_rad - offset_rad_);
+  const double variance_rad2 = offset_variance_rad2_ + std::pow(heading_sigma_rad(filter), 2) +
+                               course_rad * course_rad + drift_rad_ * drift_rad_;
+  const double share =
+      previous_ ? std::clamp(to_seconds(fix.time - *previous_) / kLearnS, 0.0, 1.0) : 0.0;
+  previous_ = fix.time;
+  offset_rad_ = wrap_pi(offset_rad_ + share * change_rad);
+  offset_variance_rad2_ += share * (kSteadyRad * kSteadyRad - offset_variance_rad2_);
+  const double nis = std::min(change_rad * change_rad / variance_rad2, kLargestNis);
+  if (!cusum_.push(nis, 1)) return false;
+  offset_rad_ = 0.0;
+  offset_variance_rad2_ = 1.0;
+  return true;
+}
+
+}  // namespace leeway

@@ -1,0 +1,31 @@
+#include "leeway/navigator/imu_screen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace leeway {
+
+bool ImuScreen::note(Axis& axis, double value, double dt_s) {
+  // A rate times a step, divided by it again.
+  constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+  const bool is_same = std::abs(value - axis.value) <= kRounding * std::abs(value);
+  axis.value = value;
+  axis.held_s = is_same ? axis.held_s + dt_s : 0.0;
+  axis.held = is_same ? std::min(axis.held + 1, kHeldIncrements) : 0;
+  if (!is_same) axis.changes = std::min(axis.changes + 1, kHeldIncrements);
+  return axis.changes == kHeldIncrements && axis.held == kHeldIncrements && axis.held_s >= kHeldS;
+}
+
+bool ImuScreen::is_held(const ImuIncrement& inc) {
+  bool held = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const bool gyro = note(axes_[k], inc.dtheta_b_rad(i) / inc.dt_s, inc.dt_s);
+    const bool accelerometer = note(axes_[3 + k], inc.dv_b_mps(i) / inc.dt_s, inc.dt_s);
+    held = held || gyro || accelerometer;
+  }
+  return held;
+}
+
+}  // namespace leeway
