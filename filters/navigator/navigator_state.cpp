@@ -380,14 +380,14 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   const auto rival = [&](const Ekf& filter) {
     return rival_of(filter, fix, last_update_, unseen_mps);
   };
-  const Ekf& doubting = bank_->most_doubting();
+  // Where a part was fused the filter is near: nothing else is in doubt for now.
+  const bool is_part = last_update_.fused_in_part;
+  const Ekf& doubting = is_part ? bank_->best() : bank_->most_doubting();
   const double scale = doubting.inertial().noise_scale();
-  const bool is_repeated = gate_recovery_.is_repeated() && !refuses_position_alone(last_update_);
+  const bool is_repeated = gate_recovery_.is_repeated() && !is_part;
   if (is_repeated && doubt_heading(rival(bank_->best()), rival(doubting))) return;
   if (bank_->count() > HeadingBank::kMaxRivals) {
-    if (is_repeated && !last_update_.fused_in_part) {
-      bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
-    }
+    if (is_repeated) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
     return;
   }
   // The more its IMU is doubted already, the likelier the filter is what is wrong.

@@ -15,6 +15,8 @@ namespace {
 constexpr double kOpenHeadingRightMps = 0.5;
 constexpr double kOpenHeadingRightM = 1.0;
 
+constexpr double kLargestNis = 25.0;  // one alone is no reason to doubt
+
 }  // namespace
 
 VehicleConfig VehicleConfig::car() { return of(VehicleKind::kCar); }
@@ -55,10 +57,12 @@ bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
   if (!block) return false;
   at_rest_ = standstill_.push(*block, bank.best());
   even_motion_s_ = standstill_.is_even(*block, bank.best()) ? even_motion_s_ + block->dt_s : 0.0;
-  if (at_rest_) rest(*block, bank);
-  const auto rolled = at_rest_ ? std::nullopt : roll(*block, bank);
-  return rolled && bank.collapsed() &&
-         cusum_.push(std::min(rolled->nis, rolled->gate), rolled->dof);
+  if (at_rest_) {
+    rest(*block, bank);
+    return false;
+  }
+  const double nis = roll(*block, bank);
+  return bank.collapsed() && cusum_.push(std::min(nis, kLargestNis), 1);
 }
 
 void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
@@ -78,21 +82,33 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
   }
 }
 
-std::optional<UpdateOutcome> VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
-  if (!config_.non_holonomic || !bank.best().vehicle()) return std::nullopt;
-  const double speed_mps = bank.best().estimate().nav.v_e_mps.norm();
-  if (speed_mps < config_.min_speed_mps) return std::nullopt;
+/// @returns the NIS of the sideways velocity, or 1 where nothing is said of it. That downwards has
+/// humps in it that say nothing of the heading.
+double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
+  const Ekf& best = bank.best();
+  if (!config_.non_holonomic || !best.vehicle()) return 1.0;
+  const double speed_mps = best.estimate().nav.v_e_mps.norm();
+  if (speed_mps < config_.min_speed_mps) return 1.0;
   const double turn_radps =
-      (block.mean_omega_ib_b_radps - bank.best().estimate().bias.b_g_radps).norm();
+      (block.mean_omega_ib_b_radps - best.estimate().bias.b_g_radps).norm();
   double right_mps = std::hypot(config_.right_sigma_mps, config_.right_sigma_m * turn_radps);
   if (!bank.collapsed()) {
     right_mps = std::hypot(right_mps, kOpenHeadingRightMps + kOpenHeadingRightM * turn_radps);
   }
-  return bank.update([&](Ekf& filter) {
-    return filter.update(non_holonomic(filter.estimate(), filter.vehicle()->value,
-                                       filter.inertial().omega_ib_b_radps(), right_mps,
-                                       config_.down_sigma_m2ps2 / speed_mps));
-  });
+  const auto constraint = [&](const Ekf& filter) {
+    return non_holonomic(filter.estimate(), filter.vehicle()->value,
+                         filter.inertial().omega_ib_b_radps(), right_mps,
+                         config_.down_sigma_m2ps2 / speed_mps);
+  };
+  const double heading_mps =
+      speed_mps * std::hypot(heading_sigma_rad(best),
+                             std::sqrt(best.vehicle()->P(kMountYaw, kMountYaw)));
+  const double velocity_mps = std::sqrt(best.kernel().matrix().diagonal().segment<3>(kDv).sum());
+  const double nis = std::pow(constraint(best).innovation(0), 2) /
+                     (right_mps * right_mps + heading_mps * heading_mps +
+                      velocity_mps * velocity_mps);
+  bank.update([&](Ekf& filter) { return filter.update(constraint(filter)); });
+  return nis;
 }
 
 }  // namespace leeway

@@ -2,8 +2,6 @@
 /// What is known of a vehicle without asking a receiver: that it stands, that it does not slide.
 #pragma once
 
-#include <optional>
-
 #include "leeway/earth/fields.hpp"
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/navigator/heading_bank.hpp"
@@ -102,7 +100,7 @@ class VehicleAiding {
 
  private:
   void rest(const ImuBlock& block, HeadingBank& bank) const;
-  std::optional<UpdateOutcome> roll(const ImuBlock& block, HeadingBank& bank) const;
+  double roll(const ImuBlock& block, HeadingBank& bank) const;
 
   VehicleConfig config_;
   double gyro_noise_rad_per_sqrt_s_;
