@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kLastS = 60.0;
 
-long epoch_at(double t_s) { return std::lround(t_s / kEpochS); }
-
 bool is_right(const FaultEpoch& epoch) {
   constexpr double kSigmas = 10.0;
   constexpr double kRoomM = 10.0;

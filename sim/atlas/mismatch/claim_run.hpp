@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
 
 #include "sim/atlas/faults/fault_run.hpp"
@@ -12,6 +13,9 @@ namespace leeway::sim {
 
 inline constexpr double kDenseS = 300.0;   ///< fixes every second until then
 inline constexpr double kSparseS = 300.0;  ///< for so long afterwards few; what is scored
+
+/// The place of an epoch at this time.
+inline long epoch_at(double t_s) { return std::lround(t_s / kEpochS); }
 
 /// Sums over epochs of squares, horizontal, velocity and heading by FaultError.
 struct ClaimSums {
