@@ -84,6 +84,17 @@ void sum_up(MismatchCell& cell, const std::vector<ClaimScore>& scores) {
   cell.imu_sigma_scale = median(std::move(scales));
 }
 
+void sum_up(MismatchCampaign& campaign, const std::vector<Drive>& drives,
+            const std::vector<std::vector<ClaimScore>>& scores) {
+  std::vector<std::vector<ClaimScore>> by_cell(campaign.cells.size());
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    for (std::size_t c = 0; c < scores[k].size(); ++c) {
+      by_cell[drives[k].first_cell + c].push_back(scores[k][c]);
+    }
+  }
+  for (std::size_t c = 0; c < by_cell.size(); ++c) sum_up(campaign.cells[c], by_cell[c]);
+}
+
 }  // namespace
 
 double MismatchCell::ratio() const {
@@ -94,8 +105,11 @@ double MismatchCell::ratio() const {
 }
 
 bool MismatchCampaign::is_named(const MismatchCell& cell) const {
-  const double off = cell.imu_sigma_scale / imus[cell.imu].factor;
-  return off <= kNamedWithin && off >= 1.0 / kNamedWithin;
+  const double factor = imus[cell.imu].factor;
+  const auto is_near = [](double a, double b) {
+    return std::abs(std::log(a / b)) <= std::log(kNamedWithin);
+  };
+  return !is_near(factor, 1.0) && is_near(cell.imu_sigma_scale, factor);
 }
 
 MismatchCampaign run_mismatch(const MismatchOptions& options,
@@ -112,13 +126,7 @@ MismatchCampaign run_mismatch(const MismatchOptions& options,
         if (progress) progress(static_cast<double>(done) / static_cast<double>(drives.size()));
       },
       options.threads);
-  std::vector<std::vector<ClaimScore>> by_cell(campaign.cells.size());
-  for (std::size_t k = 0; k < drives.size(); ++k) {
-    for (std::size_t c = 0; c < scores[k].size(); ++c) {
-      by_cell[drives[k].first_cell + c].push_back(scores[k][c]);
-    }
-  }
-  for (std::size_t c = 0; c < by_cell.size(); ++c) sum_up(campaign.cells[c], by_cell[c]);
+  sum_up(campaign, drives, scores);
   return campaign;
 }
 
@@ -127,6 +135,8 @@ MismatchSummary summary_of(const MismatchCampaign& campaign) {
   for (const MismatchCell& cell : campaign.cells) {
     summary.trials += static_cast<std::size_t>(campaign.trials);
     summary.lost += cell.lost.size();
+    if (!is_honest(cell.before_fixes.ratio(FaultError::kVelocity))) ++summary.velocity_outside;
+    if (!is_honest(cell.before_fixes.ratio(FaultError::kHeading))) ++summary.heading_outside;
     if (cell.claims_hold()) continue;
     ++(campaign.is_named(cell) ? summary.named : summary.outside);
   }

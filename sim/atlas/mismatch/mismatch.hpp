@@ -18,6 +18,7 @@ namespace leeway::sim {
 inline constexpr double kLeastRatio = 0.5;
 inline constexpr double kMostRatio = 1.5;
 inline constexpr double kNamedWithin = 2.0;  ///< a factor, of health over the true one
+inline bool is_honest(double ratio) { return ratio >= kLeastRatio && ratio <= kMostRatio; }
 
 enum class FixKind { kCode, kRtk };
 constexpr auto names(FixKind) { return std::array{"code", "RTK"}; }
@@ -33,18 +34,19 @@ struct MismatchCell {
   std::vector<std::uint64_t> lost{};  ///< seeds
   double imu_sigma_scale{1.0};        ///< of health at the end, the median
 
-  /// The worse of before fixes and between, on a logarithmic scale. Infinite where nothing is
-  /// claimed.
+  /// Horizontal RMS error over RMS sigma, before fixes or between, whichever is further from 1 on a
+  /// logarithmic scale. Infinite where there is no solution.
   double ratio() const;
-  bool claims_hold() const { return ratio() >= kLeastRatio && ratio() <= kMostRatio; }
+  bool claims_hold() const { return is_honest(ratio()); }
 };
 
 struct MismatchCampaign {
   std::vector<TrueImu> imus{};
   std::vector<MismatchCell> cells{};
-  int trials{};  ///< of a cell: seeds 1 to trials
+  int trials{};  ///< of a cell, seeds 1 to trials: the same motion and another unit of the IMU
 
-  /// Whether health says within kNamedWithin by how much the IMU is noisier than believed.
+  /// Whether the IMU is other than believed by more than kNamedWithin, and health says within as
+  /// much by how much.
   bool is_named(const MismatchCell& cell) const;
 };
 
@@ -64,7 +66,9 @@ struct MismatchSummary {
   std::size_t lost{0};
   std::size_t cells{0};
   std::size_t outside{0};  ///< claims do not hold, and health does not name the factor
-  std::size_t named{0};    ///< claims do not hold, but health does
+  std::size_t named{0};    ///< claims do not hold, but health names the factor
+  std::size_t velocity_outside{0};  ///< cells, before fixes
+  std::size_t heading_outside{0};
 };
 MismatchSummary summary_of(const MismatchCampaign& campaign);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "leeway/model/horizontal.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 
@@ -41,6 +42,24 @@ LinearR95 linear_r95(const Scene& scene, const ErrorTrack& track) {
   return r95_m;
 }
 
+/// What all trials share.
+struct Town {
+  Scene scene{};  ///< a fix every second
+  TrueDrive way{};
+  std::vector<LinearR95> linear{};  ///< by kFixIntervalsS
+};
+
+Town town_of(const Scene& scene) {
+  Town town{.scene = thinned(scene, 1)};
+  town.scene.duration_s = kDenseS + kSparseS;
+  town.way = true_drive(scene.trajectory, scene.imu_rate_hz, town.scene.duration_s);
+  const ErrorTrack track = error_track(town.scene);
+  for (const int t_s : kFixIntervalsS) {
+    town.linear.push_back(linear_r95(thinned(town.scene, t_s), track));
+  }
+  return town;
+}
+
 /// A run, and its errors before fixes, m, and over the linear R95.
 struct SceneTrial {
   ClaimScore score{};
@@ -48,14 +67,33 @@ struct SceneTrial {
   std::vector<double> over_linear{};
 };
 
-SceneTrial run_scene_trial(const NavigatorConfig& config, const FaultInputs& inputs,
-                           const TrueDrive& way, int fix_interval_s, const LinearR95& linear) {
+SceneTrial run_scene_trial(const Town& town, const FaultInputs& inputs, VehicleKind vehicle,
+                           std::size_t interval) {
+  NavigatorConfig config;
+  config.filter.lever_arm_b_m = town.scene.filter.lever_arm_b_m;
+  config.vehicle = VehicleConfig::of(vehicle);
   SceneTrial trial;
-  trial.score = run_claims(config, inputs, way, fix_interval_s, [&](const FaultEpoch& epoch) {
-    trial.errors_m.push_back(epoch.horizontal_m());
-    trial.over_linear.push_back(epoch.horizontal_m() / linear.at(epoch_at(epoch.t_s)));
-  });
+  trial.score = run_claims(
+      config, inputs, town.way, kFixIntervalsS[interval], [&](const FaultEpoch& epoch) {
+        const double r95_m = town.linear[interval].at(epoch_at(epoch.t_s));
+        trial.errors_m.push_back(epoch.horizontal_m());
+        trial.over_linear.push_back(epoch.horizontal_m() / r95_m);
+      });
   return trial;
+}
+
+/// By vehicle, then interval.
+std::vector<SceneTrial> run_seed(const Town& town, std::uint64_t seed) {
+  const Scene& scene = town.scene;
+  const FaultInputs inputs =
+      inputs_of(town.way, scene.imu, scene.gnss, scene.gnss.interval_s, seed);
+  std::vector<SceneTrial> trials;
+  for (const VehicleKind vehicle : kVehicles) {
+    for (std::size_t i = 0; i < kFixIntervalsS.size(); ++i) {
+      trials.push_back(run_scene_trial(town, inputs, vehicle, i));
+    }
+  }
+  return trials;
 }
 
 double quantile_95(std::vector<double> values) {
@@ -87,29 +125,13 @@ SceneClaim summed(const std::vector<std::vector<SceneTrial>>& trials, std::size_
 
 std::vector<SceneClaim> run_scene_claims(const Scene& scene, int trials, int threads,
                                          const std::function<void(double fraction)>& progress) {
-  Scene dense = scene;
-  dense.duration_s = kDenseS + kSparseS;
-  dense = thinned(dense, 1);
-  const TrueDrive way = true_drive(dense.trajectory, dense.imu_rate_hz, dense.duration_s);
-  const ErrorTrack track = error_track(dense);
-  std::vector<LinearR95> linear;
-  for (const int t_s : kFixIntervalsS) linear.push_back(linear_r95(thinned(dense, t_s), track));
+  const Town town = town_of(scene);
   std::vector<std::vector<SceneTrial>> results(static_cast<std::size_t>(trials));
-  const auto run = [&](std::size_t k) {
-    const FaultInputs inputs = inputs_of(way, dense.imu, dense.gnss, dense.gnss.interval_s, k + 1);
-    for (const VehicleKind vehicle : kVehicles) {
-      NavigatorConfig config;
-      config.filter.lever_arm_b_m = dense.filter.lever_arm_b_m;
-      config.vehicle = VehicleConfig::of(vehicle);
-      for (std::size_t i = 0; i < kFixIntervalsS.size(); ++i) {
-        results[k].push_back(run_scene_trial(config, inputs, way, kFixIntervalsS[i], linear[i]));
-      }
-    }
-  };
   const auto show = [&](std::size_t done) {
     if (progress) progress(static_cast<double>(done) / static_cast<double>(trials));
   };
-  parallel_for(results.size(), run, show, threads);
+  parallel_for(
+      results.size(), [&](std::size_t k) { results[k] = run_seed(town, k + 1); }, show, threads);
   std::vector<SceneClaim> claims;
   for (std::size_t cell = 0; cell < results.front().size(); ++cell) {
     claims.push_back(summed(results, cell));

@@ -80,6 +80,9 @@ int run(const AtlasChoice& options) {
     print_atlas_list();
     return kSuccess;
   }
+  if (!options.page.empty() && !options.faults && !options.mismatch) {
+    throw Error("--write: a page of --faults or of --mismatch: add one of them");
+  }
   if (options.faults) return run_faults(options);
   if (options.mismatch) return run_mismatch(options);
   if (!options.expected.empty()) return write_expected(options);
@@ -130,10 +133,12 @@ void add_options(CLI::App& app, AtlasChoice& options) {
 const Command<AtlasChoice> kAtlas{
     "atlas", "Scenes in which methods break, run against every variant, with expected verdicts",
     "Exits with 2 when a cell is not as expected, or a variant of the library fails and no\n"
-    "detector says so; with --faults, when more than 2 % of the cells are silent.\n"
+    "detector says so; with --faults, when more than 2 % of the cells are silent; with\n"
+    "--mismatch, when a trial is lost, or a claim is off and health does not name the factor.\n"
     "Examples:\n"
     "  leeway atlas --scene parked-rtk,wrong-heading --csv cells.csv\n"
-    "  leeway atlas --faults --short",
+    "  leeway atlas --faults --short\n"
+    "  leeway atlas --mismatch --short --trials 3",
     add_options, run};
 
 }  // namespace

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "sim/cli/output.hpp"
 
@@ -13,12 +16,35 @@ namespace {
 
 using sim::FaultError;
 
+constexpr std::string_view kHead = R"(# IMUs that the navigator does not know
+
+Written by `leeway atlas --mismatch --write docs/guide/mismatch.md`. The default navigator, told
+nothing of its IMU, and the same with `VehicleConfig::car()`, on the car drive of
+[the matrix of faults](fault-matrix.md) at 50 Hz, with fixes of code (3.2 m horizontally, most of it
+lasting for half a minute, and 5 cm/s) and RTK (2 cm, 3 cm/s): every second for 300 s, then every T
+for 300 s, which are scored. Each trial has another unit of the IMU: seeds 1 to N.
+
+The default model is that of a car-grade MEMS IMU (`automotive_mems_model()`). In the rows with a
+factor the true sensor's white noise, in-run drift, scale factors or misalignments are so many times
+larger, or all four. Where the model states no scale factor and no misalignment the factor is of
+1000 ppm and 1 mrad. The parts are those of [the catalogue](imu-catalogue.md), by their datasheets,
+turn-on bias included.
+
+Entries: RMS of the horizontal error over RMS of its claimed sigma, just before fixes or between,
+whichever is further from 1. **Bold**: not within 0.5 to 1.5. A star: health names the factor, as
+`imu_sigma_scale` is within 2 x of it. Lost: within the last minute never within 10 m + 10 sigmas of
+the truth, or a solution that is not finite.
+
+)";
+
 std::string summary_text(const sim::MismatchCampaign& campaign) {
   const sim::MismatchSummary s = summary_of(campaign);
   return fmt::format(
       "Lost: {} of {} trials.\n"
-      "Claims outside {:g} to {:g}: {} of {} cells, {} of them named by health.\n",
-      s.lost, s.trials, sim::kLeastRatio, sim::kMostRatio, s.outside + s.named, s.cells, s.named);
+      "Horizontal claims outside {:g} to {:g}: {} of {} cells; the factor is named in {} of them.\n"
+      "Before fixes, velocity outside in {}, heading in {}.\n",
+      s.lost, s.trials, sim::kLeastRatio, sim::kMostRatio, s.outside + s.named, s.cells, s.named,
+      s.velocity_outside, s.heading_outside);
 }
 
 /// The cells, first those with lost trials, then by how far the claim is off.
@@ -38,6 +64,7 @@ const std::vector<std::string> kColumns{
     "<IMU", "<fixes", "<vehicle", "T, s", "lost", "before fixes, m", "RMS / sigma",
     "between", "velocity", "heading", "> 3 sigma, %", "> 5 sigma, %", "IMU scale", "true", "<word"};
 
+/// "ok", "named", "TOO SMALL": the claim; "too large".
 std::string word(const sim::MismatchCampaign& campaign, const sim::MismatchCell& cell) {
   if (cell.claims_hold()) return "ok";
   if (campaign.is_named(cell)) return "named";
@@ -89,12 +116,39 @@ Json cell_json(const sim::MismatchCampaign& campaign, const sim::MismatchCell& c
           {"holds", cell.claims_hold()}};
 }
 
+std::string entry(const sim::MismatchCampaign& campaign, const sim::MismatchCell& cell) {
+  std::string text = number(cell.ratio(), 2);
+  if (!cell.claims_hold()) text = "**" + text + "**";
+  if (campaign.is_named(cell)) text += " \\*";
+  if (!cell.lost.empty()) text += fmt::format(", {} lost", cell.lost.size());
+  return text;
+}
+
+/// IMUs by vehicles and intervals.
+std::string matrix_markdown(const sim::MismatchCampaign& campaign, sim::FixKind fixes) {
+  std::string head = fmt::format("\n| {} |", name(fixes));
+  std::string rule = "|---|";
+  std::vector<std::string> rows;
+  for (const sim::TrueImu& imu : campaign.imus) rows.push_back(fmt::format("| {} |", imu.name));
+  for (const sim::MismatchCell& cell : campaign.cells) {
+    if (cell.fixes != fixes) continue;
+    rows[cell.imu] += fmt::format(" {} |", entry(campaign, cell));
+    if (cell.imu > 0) continue;
+    head += fmt::format(" {}, {} s |", name(cell.vehicle), cell.fix_interval_s);
+    rule += "---|";
+  }
+  return fmt::format("{}\n{}\n{}\n", head, rule, fmt::join(rows, "\n"));
+}
+
 }  // namespace
 
 void print_mismatch(const sim::MismatchCampaign& campaign) {
   fmt::print("{}\n", summary_text(campaign));
   Table table(kColumns);
-  for (const sim::MismatchCell* cell : worst_first(campaign)) table.add(row_of(campaign, *cell));
+  for (const sim::MismatchCell* cell : worst_first(campaign)) {
+    const bool is_good = cell->lost.empty() && cell->claims_hold();
+    table.add(row_of(campaign, *cell), is_good ? Tone::kPlain : Tone::kBad);
+  }
   table.print();
 }
 
@@ -107,12 +161,16 @@ Json mismatch_json(const sim::MismatchCampaign& campaign) {
             {"lost", s.lost},
             {"cells", s.cells},
             {"outside", s.outside},
-            {"named", s.named}}},
+            {"named", s.named},
+            {"velocity_outside", s.velocity_outside},
+            {"heading_outside", s.heading_outside}}},
           {"cells", std::move(cells)}};
 }
 
 std::string mismatch_markdown(const sim::MismatchCampaign& campaign) {
-  return summary_text(campaign);
+  std::string text = std::string(kHead) + summary_text(campaign);
+  for (const sim::FixKind fixes : kAll<sim::FixKind>) text += matrix_markdown(campaign, fixes);
+  return text;
 }
 
 }  // namespace leeway::cli
