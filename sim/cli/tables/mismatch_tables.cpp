@@ -40,10 +40,10 @@ the truth, or a solution that is not finite.
 std::string summary_text(const sim::MismatchCampaign& campaign) {
   const sim::MismatchSummary s = summary_of(campaign);
   return fmt::format(
-      "Lost: {} of {} trials.\n"
+      "Lost: {} of {} trials, {} a cell.\n"
       "Horizontal claims outside {:g} to {:g}: {} of {} cells; the factor is named in {} of them.\n"
       "Before fixes, velocity outside in {}, heading in {}.\n",
-      s.lost, s.trials, sim::kLeastRatio, sim::kMostRatio, s.outside + s.named, s.cells, s.named,
+      s.lost, s.trials, campaign.trials, sim::kLeastRatio, sim::kMostRatio, s.outside + s.named, s.cells, s.named,
       s.velocity_outside, s.heading_outside);
 }
 
