@@ -115,8 +115,8 @@ FaultDrive drive_of(const Regime& regime, const Trajectory& trajectory, double d
   constexpr double kFirstFixS = 0.5;
   FaultDrive drive{.way = true_drive(trajectory, regime.imu_rate_hz, duration_s)};
   drive.inputs =
-      inputs_of(drive.way, regime.imu,
-                {.errors = regime.gnss, .interval_s = regime.fix_interval_s}, kFirstFixS, kSeed);
+      inputs_of(drive.way, regime.imu, {.errors = regime.gnss, .interval_s = regime.fix_interval_s},
+                kFirstFixS, kSeed);
   return drive;
 }
 

@@ -65,8 +65,8 @@ struct MismatchSummary {
   std::size_t trials{0};
   std::size_t lost{0};
   std::size_t cells{0};
-  std::size_t outside{0};  ///< claims do not hold, and health does not name the factor
-  std::size_t named{0};    ///< claims do not hold, but health names the factor
+  std::size_t outside{0};           ///< claims do not hold, and health does not name the factor
+  std::size_t named{0};             ///< claims do not hold, but health names the factor
   std::size_t velocity_outside{0};  ///< cells, before fixes
   std::size_t heading_outside{0};
 };

@@ -73,8 +73,8 @@ SceneTrial run_scene_trial(const Town& town, const FaultInputs& inputs, VehicleK
   config.filter.lever_arm_b_m = town.scene.filter.lever_arm_b_m;
   config.vehicle = VehicleConfig::of(vehicle);
   SceneTrial trial;
-  trial.score = run_claims(
-      config, inputs, town.way, kFixIntervalsS[interval], [&](const FaultEpoch& epoch) {
+  trial.score =
+      run_claims(config, inputs, town.way, kFixIntervalsS[interval], [&](const FaultEpoch& epoch) {
         const double r95_m = town.linear[interval].at(epoch_at(epoch.t_s));
         trial.errors_m.push_back(epoch.horizontal_m());
         trial.over_linear.push_back(epoch.horizontal_m() / r95_m);

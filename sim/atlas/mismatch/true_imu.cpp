@@ -1,9 +1,9 @@
 #include "sim/atlas/mismatch/true_imu.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <array>
-
-#include <spdlog/fmt/fmt.h>
 
 #include "leeway/ekf/ekf_config.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
@@ -38,9 +38,9 @@ TrueImu mismatched(Mismatch what, double factor) {
 TrueImu part_as_imu(const ImuPart& part) {
   TrueImu imu{std::string(part.name), Mismatch::kPart, 1.0, imu_model(part)};
   const ImuErrorModel believed = believed_imu();
-  imu.factor = std::max(
-      imu.model.accelerometer.noise_density / believed.accelerometer.noise_density,
-      imu.model.gyro.noise_density / believed.gyro.noise_density);
+  imu.factor =
+      std::max(imu.model.accelerometer.noise_density / believed.accelerometer.noise_density,
+               imu.model.gyro.noise_density / believed.gyro.noise_density);
   return imu;
 }
 
@@ -58,8 +58,8 @@ ImuErrorModel believed_imu() {
 
 std::vector<TrueImu> true_imus(bool brief) {
   constexpr std::array kFactors{0.1, 0.3, 3.0, 10.0, 30.0};
-  std::vector<TrueImu> imus{{std::string(name(Mismatch::kNone)), Mismatch::kNone, 1.0,
-                             believed_imu()}};
+  std::vector<TrueImu> imus{
+      {std::string(name(Mismatch::kNone)), Mismatch::kNone, 1.0, believed_imu()}};
   for (const Mismatch what : {Mismatch::kNoise, Mismatch::kDrift, Mismatch::kScale,
                               Mismatch::kMisalignment, Mismatch::kAll}) {
     for (const double factor : kFactors) {

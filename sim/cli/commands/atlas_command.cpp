@@ -47,10 +47,10 @@ int run_faults(const AtlasChoice& options) {
     Progress progress("faults");
     return sim::run_fault_matrix(options.atlas.brief, options.threads, std::ref(progress));
   }();
-  show(options.output,
-       answer_json("atlas", {{"faults", true}, {"short", options.atlas.brief}},
-                   faults_json(matrix)),
-       [&] { print_faults(matrix); });
+  show(
+      options.output,
+      answer_json("atlas", {{"faults", true}, {"short", options.atlas.brief}}, faults_json(matrix)),
+      [&] { print_faults(matrix); });
   if (!options.page.empty()) write_file(options.page, faults_markdown(matrix));
   return summary_of(matrix).silent_share() > kBearableShare ? kNoAnswer : kSuccess;
 }
@@ -66,8 +66,7 @@ int run_mismatch(const AtlasChoice& options) {
     return sim::run_mismatch(mismatch, std::ref(progress));
   }();
   show(options.output,
-       answer_json("atlas",
-                   {{"mismatch", true}, {"short", brief}, {"trials", mismatch.trials}},
+       answer_json("atlas", {{"mismatch", true}, {"short", brief}, {"trials", mismatch.trials}},
                    mismatch_json(campaign)),
        [&] { print_mismatch(campaign); });
   if (!options.page.empty()) write_file(options.page, mismatch_markdown(campaign));
@@ -105,19 +104,18 @@ void add_options(CLI::App& app, AtlasChoice& options) {
   app.add_flag("--list", options.list, "name the scenes and run nothing");
   CLI::Option* brief =
       app.add_flag("--short", options.atlas.brief, "fewer trials and shorter drives, for tests");
-  CLI::Option* faults = app.add_flag(
-      "--faults", options.faults, "the matrix of faults by vehicles in place of the scenes");
+  CLI::Option* faults = app.add_flag("--faults", options.faults,
+                                     "the matrix of faults by vehicles in place of the scenes");
   faults->excludes(scene);
-  CLI::Option* mismatch = app.add_flag(
-      "--mismatch", options.mismatch,
-      "the default navigator with IMUs that it does not know in place of the scenes");
+  CLI::Option* mismatch =
+      app.add_flag("--mismatch", options.mismatch,
+                   "the default navigator with IMUs that it does not know in place of the scenes");
   mismatch->excludes(scene)->excludes(faults);
   app.add_option("--trials", options.mismatch_trials, "of each cell of --mismatch")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N")
       ->needs(mismatch);
-  add_file_option(app, "--write", options.page,
-                  "write what --faults or --mismatch finds as a page")
+  add_file_option(app, "--write", options.page, "write what --faults or --mismatch finds as a page")
       ->excludes(scene);
   add_threads_option(app, options.threads);
   add_output_options(app, options.output);

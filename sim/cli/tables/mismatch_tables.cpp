@@ -43,8 +43,8 @@ std::string summary_text(const sim::MismatchCampaign& campaign) {
       "Lost: {} of {} trials, {} a cell.\n"
       "Horizontal claims outside {:g} to {:g}: {} of {} cells; the factor is named in {} of them.\n"
       "Before fixes, velocity outside in {}, heading in {}.\n",
-      s.lost, s.trials, campaign.trials, sim::kLeastRatio, sim::kMostRatio, s.outside + s.named, s.cells, s.named,
-      s.velocity_outside, s.heading_outside);
+      s.lost, s.trials, campaign.trials, sim::kLeastRatio, sim::kMostRatio, s.outside + s.named,
+      s.cells, s.named, s.velocity_outside, s.heading_outside);
 }
 
 /// The cells, first those with lost trials, then by how far the claim is off.
@@ -54,15 +54,15 @@ std::vector<const sim::MismatchCell*> worst_first(const sim::MismatchCampaign& c
   const auto badness = [](const sim::MismatchCell* cell) {
     return std::pair{cell->lost.size(), std::abs(std::log(cell->ratio()))};
   };
-  std::stable_sort(cells.begin(), cells.end(), [&](const auto* a, const auto* b) {
-    return badness(a) > badness(b);
-  });
+  std::stable_sort(cells.begin(), cells.end(),
+                   [&](const auto* a, const auto* b) { return badness(a) > badness(b); });
   return cells;
 }
 
 const std::vector<std::string> kColumns{
-    "<IMU", "<fixes", "<vehicle", "T, s", "lost", "before fixes, m", "RMS / sigma",
-    "between", "velocity", "heading", "> 3 sigma, %", "> 5 sigma, %", "IMU scale", "true", "<word"};
+    "<IMU",        "<fixes",  "<vehicle", "T, s",    "lost",         "before fixes, m",
+    "RMS / sigma", "between", "velocity", "heading", "> 3 sigma, %", "> 5 sigma, %",
+    "IMU scale",   "true",    "<word"};
 
 /// "ok", "named", "TOO SMALL": the claim; "too large".
 std::string word(const sim::MismatchCampaign& campaign, const sim::MismatchCell& cell) {
@@ -76,22 +76,22 @@ std::vector<std::string> row_of(const sim::MismatchCampaign& campaign,
   const sim::TrueImu& imu = campaign.imus[cell.imu];
   const sim::ClaimSums& before = cell.before_fixes;
   const auto percent = [&](double epochs) { return number(100.0 * epochs / before.epochs, 1); };
-  return {imu.name,
-          std::string(name(cell.fixes)),
-          std::string(name(cell.vehicle)),
-          std::to_string(cell.fix_interval_s),
-          cell.lost.empty() ? "0" : fmt::format("{} ({})", cell.lost.size(),
-                                                fmt::join(cell.lost, " ")),
-          number(before.rms(FaultError::kPosition), 2),
-          number(before.ratio(FaultError::kPosition), 2),
-          number(cell.between.ratio(FaultError::kPosition), 2),
-          number(before.ratio(FaultError::kVelocity), 2),
-          number(before.ratio(FaultError::kHeading), 2),
-          percent(before.beyond_3),
-          percent(before.beyond_5),
-          number(cell.imu_sigma_scale, 2),
-          number(imu.factor, 2),
-          word(campaign, cell)};
+  return {
+      imu.name,
+      std::string(name(cell.fixes)),
+      std::string(name(cell.vehicle)),
+      std::to_string(cell.fix_interval_s),
+      cell.lost.empty() ? "0" : fmt::format("{} ({})", cell.lost.size(), fmt::join(cell.lost, " ")),
+      number(before.rms(FaultError::kPosition), 2),
+      number(before.ratio(FaultError::kPosition), 2),
+      number(cell.between.ratio(FaultError::kPosition), 2),
+      number(before.ratio(FaultError::kVelocity), 2),
+      number(before.ratio(FaultError::kHeading), 2),
+      percent(before.beyond_3),
+      percent(before.beyond_5),
+      number(cell.imu_sigma_scale, 2),
+      number(imu.factor, 2),
+      word(campaign, cell)};
 }
 
 Json cell_json(const sim::MismatchCampaign& campaign, const sim::MismatchCell& cell) {

@@ -10,9 +10,7 @@
 namespace leeway::sim {
 namespace {
 
-Scene town_car() {
-  return read_scene(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
-}
+Scene town_car() { return read_scene(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml"); }
 
 /// What the navigator makes of the town, at every interval.
 /// @param off  what R95 may be off by, relative

@@ -42,8 +42,8 @@ TEST_CASE("atlas --json, --csv and --markdown: the contract") {
 
 TEST_CASE("atlas --mismatch --json and --write: the contract") {
   const TempDir dir;
-  const Outcome outcome = leeway("atlas --mismatch --short --trials 1 --json --write " +
-                                 quoted(dir / "page.md"));
+  const Outcome outcome =
+      leeway("atlas --mismatch --short --trials 1 --json --write " + quoted(dir / "page.md"));
   const auto object = outcome.json();
   CHECK(object.at("input").at("trials") == 1);
   const auto& summary = object.at("results").at("summary");
@@ -66,7 +66,9 @@ TEST_CASE("atlas refuses what it cannot do, and says what to do") {
   const Outcome unknown = leeway("atlas --scene dead-rows");
   CHECK(unknown.exit_code == 1);
   CHECK(contains(unknown.err, "did you mean 'dead-row'?"));
-  for (const char* options : {"--threads -1", "--trials 3", "--mismatch --faults", "--mismatch --trials 0", "--write x.md", "--short --write-expected x.csv", "--csv"}) {
+  for (const char* options :
+       {"--threads -1", "--trials 3", "--mismatch --faults", "--mismatch --trials 0",
+        "--write x.md", "--short --write-expected x.csv", "--csv"}) {
     CAPTURE(options);
     const Outcome outcome = leeway(std::string("atlas ") + options);
     CHECK(outcome.exit_code == 1);
