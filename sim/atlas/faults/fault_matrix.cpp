@@ -38,12 +38,12 @@ void run_without_fault(const Regime& regime, RegimeRun& run) {
   double square_m2 = 0.0;
   double epochs = 0.0;
   Navigator navigator(regime.config);
-  run_navigator(navigator, run.drive.inputs, run.drive, std::numeric_limits<double>::infinity(),
+  run_navigator(navigator, run.drive.inputs, run.drive.way, std::numeric_limits<double>::infinity(),
                 [&](const FaultEpoch& epoch) {
                   run.states.push_back(epoch.state);
                   if (epoch.state != Health::State::kAligned) floor.aligned_s = epoch.t_s;
                   if (epoch.t_s <= regime.settled_s) return;
-                  square_m2 += epoch.horizontal_m * epoch.horizontal_m;
+                  square_m2 += epoch.horizontal_m() * epoch.horizontal_m();
                   epochs += 1.0;
                   if (epoch.is_beyond()) floor.beyond_s += kEpochS;
                 });
@@ -72,9 +72,9 @@ class CellScore {
     if (epoch.t_s <= window_.from_s) return;
     cell.finite = cell.finite && epoch.finite;
     if (epoch.is_beyond()) add_wrong(epoch, tells(epoch, k));
-    if (window_.has(epoch.t_s)) cell.worst_m = std::max(cell.worst_m, epoch.horizontal_m);
+    if (window_.has(epoch.t_s)) cell.worst_m = std::max(cell.worst_m, epoch.horizontal_m());
     const bool good = epoch.has_solution && epoch.finite && !epoch.is_beyond() &&
-                      epoch.horizontal_m <= kFloors * shared_.floor.horizontal_m;
+                      epoch.horizontal_m() <= kFloors * shared_.floor.horizontal_m;
     if (!good && epoch.t_s > window_.to_s) bad_s_ = epoch.t_s;
   }
 
@@ -119,11 +119,11 @@ void run_cell(FaultCell& cell, const Fault& fault, const Regime& regime, const R
   }
   Navigator navigator(regime.config);
   if (fault.heading_error_rad != 0.0) {
-    start_turned(navigator, regime, drive.truth.front(), fault.heading_error_rad);
+    start_turned(navigator, regime, drive.way.truth.front(), fault.heading_error_rad);
   }
   CellScore score(window, regime, shared);
   score.cell = cell;
-  run_navigator(navigator, std::move(inputs), drive, end_s, std::ref(score));
+  run_navigator(navigator, std::move(inputs), drive.way, end_s, std::ref(score));
   cell = score.cell;
   if (!fault.lasts) cell.recovery_s = score.recovery_s();
 }

@@ -5,6 +5,7 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sim/scene/receiver.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/random.hpp"
 #include "sim/atlas/trials.hpp"
@@ -35,21 +36,23 @@ void set_errors(FaultEpoch& epoch, const Solution& solution, const NavState& tru
   const auto ratio = [](const auto& error, const auto& sigma) {
     return error.cwiseAbs().cwiseQuotient(sigma).maxCoeff();
   };
-  epoch.horizontal_m = position_n_m.norm();
+  epoch.claims = {{{position_n_m.norm(), solution.sigma_position_n_m.head<2>().norm()},
+                   {velocity_n_mps.norm(), solution.sigma_velocity_n_mps.norm()},
+                   {heading_rad, solution.sigma_attitude_rad.z()}}};
   epoch.sigmas = {ratio(position_n_m, solution.sigma_position_n_m.head<2>()),
                   ratio(velocity_n_mps, solution.sigma_velocity_n_mps),
                   heading_rad / solution.sigma_attitude_rad.z()};
 }
 
-void compare(FaultEpoch& epoch, const Solution& solution, const FaultDrive& drive, std::size_t k) {
+void compare(FaultEpoch& epoch, const Solution& solution, const TrueDrive& way, std::size_t k) {
   epoch.finite = is_finite(solution);
   if (!epoch.finite) return;
-  set_errors(epoch, solution, drive.truth[k]);
+  set_errors(epoch, solution, way.truth[k]);
   const double own_s = to_seconds(solution.nav.time);
-  const bool has_truth = own_s >= 0.0 && own_s <= drive.trajectory.duration_s;
+  const bool has_truth = own_s >= 0.0 && own_s <= way.trajectory.duration_s;
   if (epoch.stands_still || !has_truth || std::abs(own_s - epoch.t_s) < 1e-6) return;
   FaultEpoch own = epoch;
-  set_errors(own, solution, truth_at(drive.trajectory, own_s).nav);
+  set_errors(own, solution, truth_at(way.trajectory, own_s).nav);
   if (own.worst_sigmas() < epoch.worst_sigmas()) epoch = own;
 }
 
@@ -84,27 +87,44 @@ class Feed {
 
 }  // namespace
 
-FaultDrive drive_of(const Regime& regime, const Trajectory& trajectory, double duration_s) {
-  FaultDrive drive{.trajectory = trajectory};
-  ImuErrorSimulator sensor(regime.imu, Random(kSeed, 0, kImuStream));
-  GnssSimulator receiver(trajectory, regime.gnss, Random(kSeed, 0, kGnssStream));
-  for (const ImuIncrement& inc : true_increments(trajectory, regime.imu_rate_hz, duration_s)) {
-    drive.inputs.imu.push_back({to_seconds(inc.time), sensor.measure(inc)});
-  }
-  for (double t_s = 0.5; t_s <= duration_s; t_s += regime.fix_interval_s) {
-    drive.inputs.fixes.push_back({t_s, receiver.fix_at(t_s)});
-  }
+TrueDrive true_drive(const Trajectory& trajectory, double imu_rate_hz, double duration_s) {
+  TrueDrive way{.trajectory = trajectory,
+                .increments = true_increments(trajectory, imu_rate_hz, duration_s)};
   for (int k = 0; k * kEpochS <= duration_s; ++k) {
-    drive.truth.push_back(truth_at(trajectory, k * kEpochS).nav);
+    way.truth.push_back(truth_at(trajectory, k * kEpochS).nav);
   }
+  return way;
+}
+
+FaultInputs inputs_of(const TrueDrive& way, const ImuErrorModel& imu, const GnssScenario& gnss,
+                      double first_fix_s, std::uint64_t seed) {
+  FaultInputs inputs;
+  ImuErrorSimulator sensor(imu, Random(seed, 0, kImuStream));
+  for (const ImuIncrement& inc : way.increments) {
+    inputs.imu.push_back({to_seconds(inc.time), sensor.measure(inc)});
+  }
+  Receiver receiver(way.trajectory, gnss, seed);
+  const double end_s = to_seconds(way.increments.back().time);
+  for (double t_s = first_fix_s; t_s <= end_s; t_s += gnss.interval_s) {
+    inputs.fixes.push_back({t_s + gnss.latency_s, receiver.fix_at(t_s)});
+  }
+  return inputs;
+}
+
+FaultDrive drive_of(const Regime& regime, const Trajectory& trajectory, double duration_s) {
+  constexpr double kFirstFixS = 0.5;
+  FaultDrive drive{.way = true_drive(trajectory, regime.imu_rate_hz, duration_s)};
+  drive.inputs =
+      inputs_of(drive.way, regime.imu, {.errors = regime.gnss, .interval_s = regime.fix_interval_s},
+                kFirstFixS, kSeed);
   return drive;
 }
 
-void run_navigator(Navigator& navigator, FaultInputs inputs, const FaultDrive& drive, double end_s,
+void run_navigator(Navigator& navigator, FaultInputs inputs, const TrueDrive& way, double end_s,
                    const std::function<void(const FaultEpoch&)>& observe) {
   Feed feed(std::move(inputs));
   Time shown = Time::min();
-  for (std::size_t k = 1; k < drive.truth.size(); ++k) {
+  for (std::size_t k = 1; k < way.truth.size(); ++k) {
     FaultEpoch epoch{.t_s = static_cast<double>(k) * kEpochS};
     if (epoch.t_s > end_s) return;
     feed.push_until(epoch.t_s, navigator);
@@ -114,7 +134,7 @@ void run_navigator(Navigator& navigator, FaultInputs inputs, const FaultDrive& d
       const Solution solution = navigator.solution();
       epoch.stands_still = solution.nav.time == shown;
       shown = solution.nav.time;
-      compare(epoch, solution, drive, k);
+      compare(epoch, solution, way, k);
     }
     observe(epoch);
   }

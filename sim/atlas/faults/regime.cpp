@@ -113,22 +113,6 @@ Trajectory aircraft_trajectory() {
   return waypoint_trajectory(p);
 }
 
-/// Code positions: half of the error lasts for half a minute, as the navigator is told.
-GnssErrorModel code_receiver() {
-  GnssErrorModel gnss;
-  gnss.position_sigma_n_m << 1.0, 1.0, 1.5;
-  gnss.correlated_sigma_n_m << 2.0, 2.0, 3.0;
-  gnss.correlation_time_s = 30.0;
-  return gnss;
-}
-
-GnssErrorModel rtk_receiver() {
-  GnssErrorModel gnss;
-  gnss.position_sigma_n_m.setConstant(0.02);
-  gnss.velocity_sigma_n_mps.setConstant(0.03);
-  return gnss;
-}
-
 Regime regime_of(const char* name, VehicleKind kind, Trajectory trajectory, double turns_at_s) {
   Regime regime{.name = name, .trajectory = std::move(trajectory), .gnss = code_receiver()};
   regime.config.vehicle = VehicleConfig::of(kind);
@@ -162,6 +146,21 @@ Jet at_clock(const Jet& m, const Jet& s) {
 }
 
 }  // namespace
+
+GnssErrorModel code_receiver() {
+  GnssErrorModel gnss;
+  gnss.position_sigma_n_m << 1.0, 1.0, 1.5;
+  gnss.correlated_sigma_n_m << 2.0, 2.0, 3.0;
+  gnss.correlation_time_s = 30.0;
+  return gnss;
+}
+
+GnssErrorModel rtk_receiver() {
+  GnssErrorModel gnss;
+  gnss.position_sigma_n_m.setConstant(0.02);
+  gnss.velocity_sigma_n_mps.setConstant(0.03);
+  return gnss;
+}
 
 const std::vector<Regime>& regimes() {
   static const std::vector<Regime> kRegimes = made_regimes();

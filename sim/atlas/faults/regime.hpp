@@ -27,6 +27,10 @@ struct Regime {
   double turns_at_s{};     ///< somewhere in a turn
 };
 
+/// Code positions: half of the error lasts for half a minute, as the navigator is told.
+GnssErrorModel code_receiver();
+GnssErrorModel rtk_receiver();  ///< 2 cm and 3 cm/s, white
+
 /// All regimes, in the order of the matrix. car() is the second.
 const std::vector<Regime>& regimes();
 

@@ -2,6 +2,7 @@
 #include "sim/cli/options.hpp"
 #include "sim/cli/tables/atlas_tables.hpp"
 #include "sim/cli/tables/fault_tables.hpp"
+#include "sim/cli/tables/mismatch_tables.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -10,12 +11,14 @@ struct AtlasChoice {
   std::vector<std::string> scenes{};
   bool list{false};
   bool faults{false};
+  bool mismatch{false};
+  int mismatch_trials{0};
   sim::AtlasOptions atlas{};
   int threads{0};
   std::filesystem::path csv{};
   std::filesystem::path markdown{};
   std::filesystem::path expected{};
-  std::filesystem::path fault_page{};
+  std::filesystem::path page{};
   Output output{};
 };
 
@@ -44,12 +47,31 @@ int run_faults(const AtlasChoice& options) {
     Progress progress("faults");
     return sim::run_fault_matrix(options.atlas.brief, options.threads, std::ref(progress));
   }();
-  show(options.output,
-       answer_json("atlas", {{"faults", true}, {"short", options.atlas.brief}},
-                   faults_json(matrix)),
-       [&] { print_faults(matrix); });
-  if (!options.fault_page.empty()) write_file(options.fault_page, faults_markdown(matrix));
+  show(
+      options.output,
+      answer_json("atlas", {{"faults", true}, {"short", options.atlas.brief}}, faults_json(matrix)),
+      [&] { print_faults(matrix); });
+  if (!options.page.empty()) write_file(options.page, faults_markdown(matrix));
   return summary_of(matrix).silent_share() > kBearableShare ? kNoAnswer : kSuccess;
+}
+
+/// The default navigator with IMUs that it does not know, in place of the scenes.
+int run_mismatch(const AtlasChoice& options) {
+  const bool brief = options.atlas.brief;
+  sim::MismatchOptions mismatch{.brief = brief, .threads = options.threads};
+  if (brief) mismatch.trials = 2;
+  if (options.mismatch_trials > 0) mismatch.trials = options.mismatch_trials;
+  const sim::MismatchCampaign campaign = [&mismatch] {
+    Progress progress("mismatch");
+    return sim::run_mismatch(mismatch, std::ref(progress));
+  }();
+  show(options.output,
+       answer_json("atlas", {{"mismatch", true}, {"short", brief}, {"trials", mismatch.trials}},
+                   mismatch_json(campaign)),
+       [&] { print_mismatch(campaign); });
+  if (!options.page.empty()) write_file(options.page, mismatch_markdown(campaign));
+  const sim::MismatchSummary summary = summary_of(campaign);
+  return summary.lost + summary.outside > 0 ? kNoAnswer : kSuccess;
 }
 
 int run(const AtlasChoice& options) {
@@ -57,7 +79,11 @@ int run(const AtlasChoice& options) {
     print_atlas_list();
     return kSuccess;
   }
+  if (!options.page.empty() && !options.faults && !options.mismatch) {
+    throw Error("--write: a page of --faults or of --mismatch: add one of them");
+  }
   if (options.faults) return run_faults(options);
+  if (options.mismatch) return run_mismatch(options);
   if (!options.expected.empty()) return write_expected(options);
   const auto results = run_scenes(options, options.atlas);
   const auto surprises = sim::atlas_surprises(results, options.atlas);
@@ -78,12 +104,19 @@ void add_options(CLI::App& app, AtlasChoice& options) {
   app.add_flag("--list", options.list, "name the scenes and run nothing");
   CLI::Option* brief =
       app.add_flag("--short", options.atlas.brief, "fewer trials and shorter drives, for tests");
-  CLI::Option* faults = app.add_flag(
-      "--faults", options.faults, "the matrix of faults by vehicles in place of the scenes");
+  CLI::Option* faults = app.add_flag("--faults", options.faults,
+                                     "the matrix of faults by vehicles in place of the scenes");
   faults->excludes(scene);
-  app.add_option("--write", options.fault_page, "write the matrix of faults as a page")
-      ->type_name("FILE.md")
-      ->needs(faults);
+  CLI::Option* mismatch =
+      app.add_flag("--mismatch", options.mismatch,
+                   "the default navigator with IMUs that it does not know in place of the scenes");
+  mismatch->excludes(scene)->excludes(faults);
+  app.add_option("--trials", options.mismatch_trials, "of each cell of --mismatch")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N")
+      ->needs(mismatch);
+  add_file_option(app, "--write", options.page, "write what --faults or --mismatch finds as a page")
+      ->excludes(scene);
   add_threads_option(app, options.threads);
   add_output_options(app, options.output);
   add_file_option(app, "--csv", options.csv, "write a row for each cell as CSV");
@@ -98,10 +131,12 @@ void add_options(CLI::App& app, AtlasChoice& options) {
 const Command<AtlasChoice> kAtlas{
     "atlas", "Scenes in which methods break, run against every variant, with expected verdicts",
     "Exits with 2 when a cell is not as expected, or a variant of the library fails and no\n"
-    "detector says so; with --faults, when more than 2 % of the cells are silent.\n"
+    "detector says so; with --faults, when more than 2 % of the cells are silent; with\n"
+    "--mismatch, when a trial is lost, or a claim is off and health does not name the factor.\n"
     "Examples:\n"
     "  leeway atlas --scene parked-rtk,wrong-heading --csv cells.csv\n"
-    "  leeway atlas --faults --short",
+    "  leeway atlas --faults --short\n"
+    "  leeway atlas --mismatch --short --trials 3",
     add_options, run};
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_CASE("faults: a drive without one is right, and a way gone backwards is one
   const FaultDrive drive = drive_of(car, car.trajectory, 120.0);
   Navigator navigator(car.config);
   int beyond = 0;
-  run_navigator(navigator, drive.inputs, drive, 120.0,
+  run_navigator(navigator, drive.inputs, drive.way, 120.0,
                 [&](const FaultEpoch& epoch) { beyond += epoch.is_beyond(); });
   CHECK(beyond == 0);
 }

@@ -40,11 +40,35 @@ TEST_CASE("atlas --json, --csv and --markdown: the contract") {
   CHECK(contains(read_file(dir / "page.md"), "# The failure atlas"));
 }
 
+TEST_CASE("atlas --mismatch --json and --write: the contract") {
+  const TempDir dir;
+  const Outcome outcome =
+      leeway("atlas --mismatch --short --trials 1 --json --write " + quoted(dir / "page.md"));
+  const auto object = outcome.json();
+  CHECK(object.at("input").at("trials") == 1);
+  const auto& summary = object.at("results").at("summary");
+  const auto& cells = object.at("results").at("cells");
+  CHECK(summary.at("cells") == cells.size());
+  CHECK(summary.at("trials") == cells.size());
+  const bool holds = summary.at("lost") == 0 && summary.at("outside") == 0;
+  CHECK(outcome.exit_code == (holds ? 0 : 2));
+  for (const auto& cell : cells) {
+    CAPTURE(cell.dump());
+    CHECK(cell.at("horizontal_rms_m") > 0.0);
+    CHECK(cell.at("ratio") > 0.0);
+  }
+  const std::string page = read_file(dir / "page.md");
+  CHECK(contains(page, "# IMUs that the navigator does not know"));
+  CHECK(contains(page, "| MPU-9250 |"));
+}
+
 TEST_CASE("atlas refuses what it cannot do, and says what to do") {
   const Outcome unknown = leeway("atlas --scene dead-rows");
   CHECK(unknown.exit_code == 1);
   CHECK(contains(unknown.err, "did you mean 'dead-row'?"));
-  for (const char* options : {"--threads -1", "--short --write-expected x.csv", "--csv"}) {
+  for (const char* options :
+       {"--threads -1", "--trials 3", "--mismatch --faults", "--mismatch --trials 0",
+        "--write x.md", "--short --write-expected x.csv", "--csv"}) {
     CAPTURE(options);
     const Outcome outcome = leeway(std::string("atlas ") + options);
     CHECK(outcome.exit_code == 1);
