@@ -234,6 +234,8 @@ Alignment Aligner::align_by_course(const GnssFix& fix, const GnssVelocity& befor
   rpy.yaw_rad = course_rad;
 
   Alignment result = start_at(fix, Eigen::Quaterniond(C_en * rotation_from_euler(rpy)));
+  result.from_course = true;
+  result.axis_e = (C_en * f_n).normalized();
   Estimate& estimate = result.estimate;
   const Eigen::Vector3d omega_b = since_fix_.dtheta_b_rad / dt_s;
   const Eigen::Vector3d lever = filter_.lever_arm_b_m;

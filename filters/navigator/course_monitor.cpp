@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastSpeedMps = 5.0;  // a car backs more slowly
 constexpr double kLearnS = 60.0;
-constexpr double kSteadyRad = 0.01;     // change of mount and slip on a straight
+constexpr double kSteadyRad = 0.005;    // change of mount and slip on a straight
 constexpr double kAxleM = 2.0;          // antenna to rear axle: in a turn it goes sideways
 constexpr double kLargestNis = 25.0;    // one alone is no reason to doubt
 

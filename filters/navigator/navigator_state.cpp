@@ -248,9 +248,8 @@ void NavigatorState::start_beside(const GnssFix& fix) {
   bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
                       found->turn_sigma_rad);
   if (C_bs_) begin_vehicle();
-  // That an IMU is so many times as noisy is so many times squared less likely.
-  const double scale = filter.inertial().noise_scale();
-  bank_->challenge(filter, 1.0 / (scale * scale), HeadingBank::kMaxFilters);
+  // As likely as all of the others together, and the best until they explain the fixes better.
+  bank_->challenge(filter, HeadingBank::kMaxHeadings, HeadingBank::kMaxFilters);
   heading_doubted_ = fix.time;
   is_starting_beside_ = false;
 }
@@ -292,6 +291,13 @@ void NavigatorState::align(const GnssFix& fix) {
   if (!found || !can_start(found->estimate, found->P)) return;
   begin(HeadingBank(filter_of(config_), found->estimate, found->P, found->axis_e,
                     found->turn_sigma_rad));
+  // Whatever goes where it points may be backing.
+  constexpr double kBackingOdds = 0.02;
+  constexpr double kHalfTurnRad = 180.0 * kRadPerDeg;
+  if (!bank_->collapsed() || !found->from_course) return;
+  Estimate backing = found->estimate;
+  backing.nav.q_eb = exp_quaternion(kHalfTurnRad * found->axis_e) * backing.nav.q_eb;
+  bank_->challenge(Ekf(filter_of(config_), backing, found->P), kBackingOdds);
 }
 
 Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
@@ -304,7 +310,12 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   const double odds = is_gated ? gate_recovery_.odds_of(fix) : 0.0;
   const bool is_outlier = is_gated && (!was_row || odds == 0.0);
   const bool differ_in_heading = bank_->count() > HeadingBank::kMaxRivals;
-  if (!differ_in_heading && !is_outlier) learn_noise(fix);
+  if (differ_in_heading) {
+    if (fix.velocity) velocity_noise_.note_claim(last_update_.velocity_nis);
+    if (fix.position) position_noise_.note_claim(last_update_.position_nis);
+  } else if (!is_outlier) {
+    learn_noise(fix);
+  }
   if (is_gated) {
     if (odds > 0.0 && !is_explained) challenge(fix, odds);
     if (!last_update_.fused_in_part) return Verdict::kGated;
@@ -356,7 +367,6 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   constexpr double kShortestDownS = 10.0;
   constexpr double kBeyondChance = 2.0;  // 30 degrees of freedom stay below with 99.9 %
   constexpr double kSteepestRatio = 4.0;
-  Ekf& filter = bank_->best();
   const double dt_s = std::clamp(to_seconds(fix.time - last_fused_.value_or(fix.time)), 0.0, kUpS);
   // A slow error of the receiver's positions would be taken for the IMU's.
   const double position_ratio =
@@ -364,11 +374,14 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
           ? position_noise_.recent_nis_ratio()
           : 0.0;
   const double ratio = std::max(position_ratio, velocity_noise_.recent_nis_ratio());
-  double scale = filter.inertial().noise_scale();
-  if (ratio > kBeyondChance) scale *= std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);
   const double down_s = std::max(kShortestDownS, kDownS * ratio * ratio);
-  if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / down_s);
-  filter.scale_imu_noise(std::min(scale, kLargestImuScale));
+  const double up = std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);
+  bank_->for_each([&](Ekf& filter) {
+    double scale = filter.inertial().noise_scale();
+    if (ratio > kBeyondChance && bank_->count() <= HeadingBank::kMaxRivals) scale *= up;
+    if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / down_s);
+    filter.scale_imu_noise(std::min(scale, kLargestImuScale));
+  });
 }
 
 void NavigatorState::challenge(const GnssFix& fix, double odds) {

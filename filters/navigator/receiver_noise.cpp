@@ -10,6 +10,7 @@ namespace leeway {
 namespace {
 
 constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
+constexpr double kSmallestRatio = 0.125;   // of one fix: one in 18, six in a row once in 3e7
 constexpr double kLastingSurprise = 16.3;  // 1e-3: of errors that last 30 s once in 8 h
 constexpr double kRecentFixes = 10.0;
 constexpr double kLargestNis = 30.0;         // one alone is no reason to doubt
@@ -49,6 +50,12 @@ void ReceiverNoise::begin_claims() {
   is_surprising_ = false;
 }
 
+void ReceiverNoise::note_claim(double nis) {
+  const double ratio = std::min(nis / 3.0, kLargestNisRatio);
+  average(nis_ratio_, nis_count_, ratio);
+  recent_nis_ratio_ += (ratio - recent_nis_ratio_) / kRecentFixes;
+}
+
 // The innovations of a right filter have no mean. Whitened by R they have the direction, by S the
 // length.
 void ReceiverNoise::note_mean(const Eigen::Vector3d& by_R, double nis) {
@@ -64,9 +71,7 @@ void ReceiverNoise::note_mean(const Eigen::Vector3d& by_R, double nis) {
 
 void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                          double nis, bool is_white) {
-  average(nis_ratio_, nis_count_, std::min(nis / 3.0, kLargestNisRatio));
-  recent_nis_ratio_ +=
-      (std::min(nis / 3.0, kLargestNisRatio) - recent_nis_ratio_) / kRecentFixes;
+  note_claim(nis);
   is_surprising_ =
       is_white ? cusum_.push(std::min(nis, kLargestNis), 3) : nis > kLastingSurprise;
   if (is_white) note_mean(R.llt().matrixL().solve(innovation), nis);
@@ -82,6 +87,13 @@ void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen:
   if (surprises_ > kNoOutliers) {
     sigma_scale_ = std::min(2.0 * sigma_scale_, kLargestScale);
     change_ratio_ = sigma_scale_ * sigma_scale_;
+    return;
+  }
+  calms_ = ratio < kSmallestRatio * sigma_scale_ * sigma_scale_ ? calms_ + 1 : 0;
+  if (calms_ > kNoOutliers && sigma_scale_ > 1.0) {
+    sigma_scale_ = std::max(0.5 * sigma_scale_, 1.0);
+    change_ratio_ = sigma_scale_ * sigma_scale_;
+    calms_ = 0;
     return;
   }
   average(change_ratio_, change_count_, std::min(ratio, largest));

@@ -53,6 +53,7 @@ struct Alignment {
   /// leaves open.
   Eigen::Vector3d axis_e{Eigen::Vector3d::UnitZ()};
   double turn_sigma_rad{0.0};
+  bool from_course{false};  ///< its heading is the course: wrong by half a turn where it backs
 };
 
 /// Collects IMU data and fixes until the attitude can be told. With heading from course that is

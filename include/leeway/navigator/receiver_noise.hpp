@@ -56,10 +56,13 @@ class ReceiverNoise {
   void note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, double nis,
             bool is_white);
 
+  /// How consistent an innovation is, and nothing of the receiver: the filter may be the wrong one.
+  void note_claim(double nis);
+
   template <class Archive>
   void visit(Archive& archive) {
     archive(sigma_scale_, nis_ratio_, recent_nis_ratio_, change_ratio_, nis_count_, change_count_,
-            previous_, previous_innovation_, surprises_, cusum_, mean_, is_surprising_);
+            previous_, previous_innovation_, surprises_, calms_, cusum_, mean_, is_surprising_);
   }
 
  private:
@@ -77,6 +80,7 @@ class ReceiverNoise {
   Eigen::Vector3d mean_{Eigen::Vector3d::Zero()};  // of the innovations, in their own sigmas
   bool is_surprising_{false};
   std::int64_t surprises_{0};  // changes in a row that are far beyond the claim
+  std::int64_t calms_{0};      // ... and far below the scaled one
   Eigen::Vector3d previous_innovation_{Eigen::Vector3d::Zero()};
 };
 
