@@ -56,8 +56,7 @@ bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
 HeadingBank::HeadingBank(const Ekf& filter) : count_(1) { members_[0].emplace(filter); }
 
 HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
-                         const Eigen::Vector3d& axis_e, double sigma_rad,
-                         double course_turns_s) {
+                         const Eigen::Vector3d& axis_e, double sigma_rad, double course_turns_s) {
   if (!(std::abs(axis_e.norm() - 1.0) < 1e-9)) {
     throw Error("heading bank: axis_e has norm " + std::to_string(axis_e.norm()) +
                 ", must be 1 within 1e-9");
@@ -105,21 +104,22 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
 double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
 
 // p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
-double HeadingBank::evidence_weight(const UpdateOutcome& outcome) {
+double HeadingBank::evidence_weight(const UpdateOutcome& outcome, bool of_heading) {
   std::optional<Time>& last =
-      last_evidence_[static_cast<std::size_t>(std::clamp(outcome.dof, 0, 6))];
+      last_evidence_[of_heading ? 0 : static_cast<std::size_t>(std::clamp(outcome.dof, 1, 6))];
   const double root =
       last ? gnss_position_weight(to_seconds(outcome.time - *last), kEvidenceCorrelationS) : 1.0;
   last = outcome.time;
   return root * root;
 }
 
-void HeadingBank::weigh(const Outcomes& outcomes) {
+void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
   const auto fused = [](const UpdateOutcome& r) {
     return r.outcome == UpdateOutcome::Outcome::kFused;
   };
   if (std::none_of(outcomes.begin(), outcomes.end(), fused)) return;
-  const double weight = evidence_weight(*std::find_if(outcomes.begin(), outcomes.end(), fused));
+  const double weight =
+      evidence_weight(*std::find_if(outcomes.begin(), outcomes.end(), fused), of_heading);
   std::array<double, kMaxFilters> surprise{};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < kMaxFilters; ++k) {

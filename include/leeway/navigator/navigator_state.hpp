@@ -12,6 +12,7 @@
 #include "leeway/navigator/gate_recovery.hpp"
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/health.hpp"
+#include "leeway/navigator/measured_heading.hpp"
 #include "leeway/navigator/mount_estimator.hpp"
 #include "leeway/navigator/navigator_config.hpp"
 #include "leeway/navigator/receiver_noise.hpp"
@@ -58,8 +59,8 @@ class NavigatorState {
   template <class Archive>
   void visit(Archive& archive) {
     archive(screen_, aligner_, aiding_, mount_, position_noise_, velocity_noise_, C_bs_,
-            last_update_, last_fused_, gate_recovery_, heading_doubted_, repairs_, resets_,
-            realignments_);
+            last_update_, last_fused_, gate_recovery_, heading_weight_, refused_headings_,
+            heading_doubted_, repairs_, resets_, realignments_);
     archive.optional(bank_, any_bank());
   }
 
@@ -69,6 +70,8 @@ class NavigatorState {
   Verdict use(const GnssFix& fix);
   template <AidingReading R>
   Verdict take(const R& reading);
+  Verdict take(const MeasuredHeading& heading);
+  void doubt_heading_by(const MeasuredHeading& heading);
   void align(const GnssFix& fix);
   void begin(const HeadingBank& bank);
   void begin_vehicle();
@@ -83,6 +86,9 @@ class NavigatorState {
   bool motion_hides_heading(Time t) const;
   void realign();
 
+  // Multipath of two antennas, or iron near a compass: as long as the errors of code.
+  static constexpr double kHeadingCorrelationS = 30.0;
+
   NavigatorConfig config_;
   FixScreen screen_{};
   Aligner aligner_;
@@ -95,6 +101,8 @@ class NavigatorState {
   UpdateOutcome last_update_{};
   std::optional<Time> last_fused_{};  // fix
   GateRecovery gate_recovery_;
+  PositionWeight heading_weight_{kHeadingCorrelationS};
+  RefusedHeadings refused_headings_{};
   std::optional<Time> heading_doubted_{};
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};
