@@ -66,9 +66,8 @@ FuseJob job_of_logs(const FuseLogs& logs) {
   if (logs.truth_window_s) set_truth_window(job.input, *logs.truth_window_s);
   if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);
   if (logs.start_heading_deg) {
-    job.input.start_heading = {{},
-                               *logs.start_heading_deg * kRadPerDeg,
-                               logs.start_heading_sigma_deg * kRadPerDeg};
+    job.input.start_heading = {
+        {}, *logs.start_heading_deg * kRadPerDeg, logs.start_heading_sigma_deg * kRadPerDeg};
   }
   return job;
 }
@@ -157,8 +156,9 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
     if (!job.estimates_mount) {
       job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
     } else if (logs.start_heading_deg) {
-      throw Error("--start-heading-deg is of the vehicle, and the mount is not known at the start: "
-                  "give --mount");
+      throw Error(
+          "--start-heading-deg is of the vehicle, and the mount is not known at the start: "
+          "give --mount");
     }
     inspect(job);
   }

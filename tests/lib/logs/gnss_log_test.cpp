@@ -94,8 +94,8 @@ TEST_CASE("a heading is optional, as columns and in a row") {
   // By itself the column may be anything, such as the course.
   GnssLogReader other(dir.file("b.csv", kPositionHeader + ",heading_deg\n1" + row + ",270\n"));
   CHECK_FALSE(all(other)[0].heading);
-  GnssLogReader damaged(dir.file("c.csv", kPositionHeader + ",heading_deg,heading_sigma_deg\n1" +
-                                              row + ",361,0.5\n"));
+  GnssLogReader damaged(dir.file(
+      "c.csv", kPositionHeader + ",heading_deg,heading_sigma_deg\n1" + row + ",361,0.5\n"));
   CHECK(all(damaged).empty());
 }
 
