@@ -86,8 +86,8 @@ class NavigatorState {
   bool motion_hides_heading(Time t) const;
   void realign();
 
-  // Multipath of two antennas, or iron near a compass: as long as the errors of code.
-  static constexpr double kHeadingCorrelationS = 30.0;
+  // What it was chosen by: docs/theory/navigator/measured_heading.md.
+  static constexpr double kHeadingCorrelationS = 10.0;
 
   NavigatorConfig config_;
   FixScreen screen_{};
