@@ -206,6 +206,29 @@ TEST_CASE("an innovation is the short way round") {
   CHECK(near(off_deg(0.0, 360.0), 0.0, kRoundingDeg));
 }
 
+TEST_CASE("refused headings are believed when they agree for longer than others were fused") {
+  const auto at = [](double t_s) { return time_from_seconds(t_s); };
+  constexpr double kOffRad = 3.1;
+  for (const double good_s : {0.0, 20.0, 1000.0}) {
+    CAPTURE(good_s);
+    RefusedHeadings row;
+    row.fused(at(0.0));
+    row.fused(at(good_s));
+    const double needed_s = std::clamp(good_s, 5.0, 300.0);
+    // To either side of the way back: they agree.
+    for (double t_s = 1.0; t_s < needed_s + 1.0; t_s += 1.0) {
+      const double off_rad = std::fmod(t_s, 2.0) < 1.0 ? kOffRad : -kOffRad;
+      REQUIRE_FALSE(row.refused(at(good_s + t_s), off_rad, kSigmaRad));
+    }
+    CHECK(row.refused(at(good_s + needed_s + 1.0), kOffRad, kSigmaRad));
+    CHECK_FALSE(row.refused(at(good_s + needed_s + 2.0), kOffRad, kSigmaRad));  // a new row
+  }
+  RefusedHeadings scattered;
+  for (double t_s = 0.0; t_s < 100.0; t_s += 1.0) {
+    CHECK_FALSE(scattered.refused(at(t_s), 1.0 + 0.3 * std::fmod(t_s, 3.0), kSigmaRad));
+  }
+}
+
 TEST_CASE("any heading is possible, one is measured: the bank is one filter at once") {
   for (const double sigma_deg : {0.3, 2.0, 5.0}) {
     CAPTURE(sigma_deg);

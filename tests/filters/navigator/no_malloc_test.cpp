@@ -157,8 +157,9 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
       if (k % 10 == 0) {
         navigator.push(OdometerSpeed{t - duration_from_seconds(0.013), 20.0, 0.1});
         navigator.push(BarometricHeight{t - duration_from_seconds(0.017), 100.0, 0.5});
-        // From 5 s on they contradict what the filter had found: the heading is opened.
-        const double heading_rad = k < 500 ? 0.002 * static_cast<double>(k) : 3.0;
+        // The circle's, at 0.2 rad/s. From 3 s on they contradict what the filter had found, for
+        // longer than they had been right: the heading is opened.
+        const double heading_rad = 0.002 * static_cast<double>(k) + (k < 300 ? 0.0 : 2.0);
         navigator.push(MeasuredHeading{t - duration_from_seconds(0.019), heading_rad, 0.05});
       }
       if (k > 1600 && k % 10 == 5) {
