@@ -121,10 +121,10 @@ UpdateOutcome BasicEkf<Kernel, Error>::update(const GnssFix& fix, const FixTrust
 }
 
 template <CovarianceKernel Kernel, class Error>
-UpdateOutcome BasicEkf<Kernel, Error>::update(const Measurement& m, Held held) {
+UpdateOutcome BasicEkf<Kernel, Error>::update(const Measurement& m, Held held, double weight) {
   UpdateOutcome outcome = judge(m);
   if (outcome.outcome != UpdateOutcome::Outcome::kFused) return outcome;
-  fuse(m, 0, 1.0, held);
+  fuse(m, m.rows(), weight, held);
   outcome.covariance_positive = has_positive_variances();
   return outcome;
 }

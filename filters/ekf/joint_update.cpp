@@ -65,15 +65,16 @@ Eigen::Matrix<double, N, 1> correction_by(Eigen::Matrix<double, N, N>& P, const 
 
 }  // namespace
 
-WhiteMeasurement whitened(const Measurement& m, int position_rows, double position_weight,
+WhiteMeasurement whitened(const Measurement& m, int weighted_rows, double weight,
                           bool with_vehicle) {
   const Cholesky<6> R_factor(m.R);
   WhiteMeasurement white{m.H, {}, m.innovation};
   R_factor.whiten(white.H);
   R_factor.whiten(white.z);
   if (with_vehicle) white.H_vehicle = R_factor.whitened(m.H_vehicle);
-  white.H.topRows(position_rows) *= position_weight;
-  white.z.head(position_rows) *= position_weight;
+  white.H.topRows(weighted_rows) *= weight;
+  white.z.head(weighted_rows) *= weight;
+  if (with_vehicle) white.H_vehicle.topRows(weighted_rows) *= weight;
   return white;
 }
 

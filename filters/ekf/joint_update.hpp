@@ -18,10 +18,10 @@ struct WhiteMeasurement {
   decltype(Measurement::innovation) z;
 };
 
-/// The measurement by the Cholesky factor of R, its position rows times a weight.
-/// @param position_rows  how many rows come first that are of a position
+/// The measurement by the Cholesky factor of R, some of its rows times a weight.
+/// @param weighted_rows  how many rows, the first ones: those of a position
 /// @param with_vehicle   whether H_vehicle is wanted; else it is left empty
-WhiteMeasurement whitened(const Measurement& m, int position_rows, double position_weight,
+WhiteMeasurement whitened(const Measurement& m, int weighted_rows, double weight,
                           bool with_vehicle);
 
 /// S = H P H^T + R, with the vehicle's part where there is one.

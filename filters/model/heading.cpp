@@ -7,6 +7,16 @@
 
 namespace leeway {
 
+Azimuth::Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Vector3d& r_e_m) {
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
+  const double north = C_en.col(0).dot(forward_e);
+  const double east = C_en.col(1).dot(forward_e);
+  level_part = std::hypot(north, east);
+  if (level_part == 0.0) return;
+  angle_rad = std::atan2(east, north);
+  gradient_e = (north * C_en.col(1) - east * C_en.col(0)) / (level_part * level_part);
+}
+
 double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P) {
   const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
   return down_e.dot(P.block<3, 3>(kPsi, kPsi) * down_e);

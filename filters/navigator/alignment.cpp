@@ -69,6 +69,7 @@ void Aligner::Sum::add(const ImuIncrement& inc) {
 void Aligner::push(const ImuIncrement& inc) {
   since_fix_.add(inc);
   since_first_.add(inc);
+  since_heading_.add(inc);
 }
 
 std::optional<Alignment> Aligner::push(const GnssFix& fix) {
@@ -101,7 +102,7 @@ std::optional<Alignment> Aligner::take(const GnssFix& fix) {
                         previous_->velocity->v_e_mps.norm() >= 0.5 * config_.min_speed_mps;
     if (!fix.position) {
       // A start needs a place.
-    } else if (config_.heading_from_course) {
+    } else if (config_.heading_from_course && votes_ == 0) {
       if (moving) result = align_by_course(fix, *previous_->velocity);
     } else if (!at_rest || rest_.dt_s >= config_.min_level_s) {
       result = level_only(fix, *previous_->velocity, at_rest);
@@ -195,7 +196,7 @@ std::optional<Alignment> Aligner::align_by(const Push& push, const GnssFix& fix)
   const Eigen::Vector3d v_n = C_en.transpose() * fix.velocity->v_e_mps;
   const double speed_mps = v_n.head<2>().norm();
   double turn_sigma_rad = std::numbers::pi;
-  if (config_.heading_from_course && speed_mps >= config_.min_speed_mps) {
+  if (config_.heading_from_course && votes_ == 0 && speed_mps >= config_.min_speed_mps) {
     // The course is the mean one of the last interval: half a turn ago.
     const Eigen::Vector3d forward_n = C_en.transpose() * (q_eb * Eigen::Vector3d::UnitX());
     const double yaw_rad = wrap_pi(std::atan2(v_n.y(), v_n.x()) -
@@ -210,6 +211,7 @@ std::optional<Alignment> Aligner::align_by(const Push& push, const GnssFix& fix)
   result.P = initial_covariance(result.estimate, sigma, filter_.imu);
   transform_block(result.P, kPsi,
                   Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose());
+  turn_to_heading(result);
   return result;
 }
 
@@ -279,6 +281,7 @@ Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bo
   transform_block(result.P, kPsi,
                   Eigen::Matrix3d::Identity() - result.axis_e * result.axis_e.transpose());
   set_rest_bias(result);
+  turn_to_heading(result);
   return result;
 }
 

@@ -59,8 +59,7 @@ bool is_negligible(const Ekf& lighter, const Ekf& heavier, double probability) {
 HeadingBank::HeadingBank(const Ekf& filter) : count_(1) { members_[0].emplace(filter); }
 
 HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, const ErrorMatrix& P,
-                         const Eigen::Vector3d& axis_e, double sigma_rad,
-                         double course_turns_s) {
+                         const Eigen::Vector3d& axis_e, double sigma_rad, double course_turns_s) {
   if (!(std::abs(axis_e.norm() - 1.0) < 1e-9)) {
     throw Error("heading bank: axis_e has norm " + std::to_string(axis_e.norm()) +
                 ", must be 1 within 1e-9");
@@ -107,7 +106,7 @@ HeadingBank::HeadingBank(const EkfConfig& config, const Estimate& estimate, cons
 
 double HeadingBank::best_weight() const { return std::exp(log_weight_[best_]); }
 
-void HeadingBank::weigh(const Outcomes& outcomes) {
+void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
   using Outcome = UpdateOutcome::Outcome;
   const auto refused_before = refused_;
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
@@ -117,7 +116,8 @@ void HeadingBank::weigh(const Outcomes& outcomes) {
   const auto is_fused = [](const UpdateOutcome& r) { return r.outcome == Outcome::kFused; };
   const auto fused = std::find_if(outcomes.begin(), outcomes.end(), is_fused);
   if (fused == outcomes.end()) return;
-  std::optional<Time>& last = last_evidence_[static_cast<std::size_t>(std::clamp(fused->dof, 0, 6))];
+  std::optional<Time>& last =
+      last_evidence_[of_heading ? 0 : static_cast<std::size_t>(std::clamp(fused->dof, 1, 6))];
   const double since_s = last ? to_seconds(fused->time - *last) : kLongAgoS;
   last = fused->time;
   // p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().

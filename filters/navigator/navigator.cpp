@@ -177,9 +177,14 @@ Verdict Navigator::push(const Reading& reading) {
 
 Verdict Navigator::take(const GnssFix& fix) {
   const TimingConfig& timing = config_.timing;
+  if (fix.heading) {
+    const Time then = fix.time - duration_from_seconds(timing.position_lag_s);
+    push(MeasuredHeading{then, fix.heading->heading_rad, fix.heading->sigma_rad});
+  }
   const Time t = clock_.counted_on(fix.time);
   GnssFix position = fix;
-  GnssFix velocity = fix;
+  position.heading.reset();
+  GnssFix velocity = position;
   position.time = t - duration_from_seconds(timing.position_lag_s);
   velocity.time = t - duration_from_seconds(timing.velocity_lag_s);
   if (!fix.position) return take({velocity.time, velocity});

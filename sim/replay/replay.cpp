@@ -45,6 +45,7 @@ class Replay {
         imu_(input.imu, input.imu_options),
         gnss_(input.gnss, input.gnss_options),
         navigator_(config),
+        start_heading_(input.start_heading),
         output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)) {
     if (!input.truth.empty()) reference_.emplace(input);
     if (!input.solution.empty()) writer_.emplace(input.solution);
@@ -62,6 +63,7 @@ class Replay {
     constexpr int kProgressEvery = 4096;
     int until_progress = kProgressEvery;
     while (const auto inc = imu_.next()) {
+      if (!imu_started_) push_start_heading(*inc);
       push_fixes(inc->time);
       push(*inc);
       if (observer_.verdict) tell_verdicts(inc->time);
@@ -75,6 +77,12 @@ class Replay {
 
  private:
   Reference* reference() { return reference_ ? &*reference_ : nullptr; }
+
+  void push_start_heading(const ImuIncrement& first) {
+    if (!start_heading_) return;
+    start_heading_->time = first.time - duration_from_seconds(first.dt_s);
+    navigator_.push(*start_heading_);
+  }
 
   /// Fixes up to t go to the navigator, and to the branches that do not withhold them.
   void push_fixes(Time t) {
@@ -192,6 +200,7 @@ class Replay {
   GnssLogReader gnss_;
   std::vector<Readings> aidings_{};
   Navigator navigator_;
+  std::optional<MeasuredHeading> start_heading_;
   Duration output_interval_;
   std::optional<Reference> reference_{};
   std::optional<SolutionWriter> writer_{};

@@ -101,7 +101,8 @@ class Drive {
     if (operation < 140) return push_sample();
     if (operation < 200) return push_fix();
     if (operation < 215) return count(navigator_.push(odometer()));
-    if (operation < 230) return count(navigator_.push(barometer()));
+    if (operation < 223) return count(navigator_.push(barometer()));
+    if (operation < 230) return count(navigator_.push(heading()));
     if (operation < 238) return start();
     if (operation < 246) return restore();
     navigator_ = Navigator(navigator_);
@@ -188,6 +189,14 @@ class Drive {
     barometer.height_m = choices_.number(100.0, 5.0);
     barometer.sigma_m = choices_.number(1.0, 0.5);
     return barometer;
+  }
+
+  MeasuredHeading heading() {
+    MeasuredHeading heading;
+    heading.time = some_time();
+    heading.heading_rad = choices_.number(0.0, 3.0);
+    heading.sigma_rad = choices_.number(0.05, 0.05);
+    return heading;
   }
 
   void start() {

@@ -63,7 +63,8 @@ class BasicEkf {
   UpdateOutcome update(const GnssFix& fix, const FixTrust& trust = {});
 
   /// The same for any measurement at the time of the estimate. @pre m.R is positive definite.
-  UpdateOutcome update(const Measurement& m, Held held = Held::kNothing);
+  /// @param weight  of what the gate lets through, as gnss_position_weight()
+  UpdateOutcome update(const Measurement& m, Held held = Held::kNothing, double weight = 1.0);
 
   const Estimate& estimate() const { return inertial_.estimate(); }
 

@@ -23,7 +23,9 @@ struct GnssLogOptions {
 /// - "CSV": columns found by name in any order, further ones ignored: t_s, lat_deg, lon_deg,
 ///   height_m (ellipsoidal), pos_std_n_m, pos_std_e_m, pos_std_d_m; and all or none of vn_mps,
 ///   ve_mps, vd_mps, vel_std_n_mps, vel_std_e_mps, vel_std_d_mps. A row with an empty or NaN
-///   velocity field has no velocity.
+///   velocity field has no velocity. Where heading_deg and heading_sigma_deg both are columns, a
+///   fix has a heading, of the body's x axis clockwise from true north. A row with an empty or NaN
+///   heading, or a zero sigma, has none; an empty sigma is 2 deg.
 /// - "KF-GINS text": blanks between, no header: seconds of week, latitude and longitude (deg),
 ///   height (m), standard deviations north, east, down (m); then, or not, velocity and its
 ///   deviations (m/s), NED.
@@ -46,8 +48,8 @@ class GnssLogReader : public LogReader<GnssFix> {
 };
 
 /// Writer of the CSV layout with velocity columns. Geodetic position, NED velocity and standard
-/// deviations are exact; the layout has no correlations. Errors and the partial file are those of
-/// CsvWriter.
+/// deviations are exact; the layout has no correlations, and headings are not written. Errors and
+/// the partial file are those of CsvWriter.
 class GnssLogWriter {
  public:
   explicit GnssLogWriter(const std::filesystem::path& path);

@@ -1,11 +1,27 @@
 /// @file
-/// The heading in an estimate: how well it is known, and whether a standstill can tell it.
+/// The heading in an estimate: what it is, how well it is known, whether a standstill can tell it.
 #pragma once
+
+#include <Eigen/Core>
 
 #include "leeway/model/error_state.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 
 namespace leeway {
+
+/// The direction over ground of a unit vector, clockwise from true north, and its change with the
+/// vector. What a change of place does to north is left out: tan(latitude) / 6370 km.
+struct Azimuth {
+  /// @param forward_e  unit vector, ECEF. @param r_e_m  the place, on the Earth
+  Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Vector3d& r_e_m);
+
+  /// Whether it can be told: within 10 deg of the vertical a small tilt changes it too much.
+  bool is_defined() const { return level_part > 0.17; }
+
+  double level_part;      ///< length of the vector's horizontal part
+  double angle_rad{0.0};  ///< 0 where the vector is vertical, as the change is
+  Eigen::Vector3d gradient_e{Eigen::Vector3d::Zero()};  ///< d angle_rad / d forward_e, level
+};
 
 /// Variance of a turn about the local vertical: of the heading, rad^2.
 double heading_variance_rad2(const Estimate& estimate, const ErrorMatrix& P);

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "leeway/navigator/barometer.hpp"
+#include "leeway/navigator/measured_heading.hpp"
 #include "leeway/navigator/odometer.hpp"
 #include "leeway/navigator/vehicle_aiding.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
@@ -17,7 +18,7 @@
 namespace leeway {
 
 /// A measurement. Those of one time act in the order of the alternatives.
-using Reading = std::variant<GnssFix, OdometerSpeed, BarometricHeight>;
+using Reading = std::variant<GnssFix, OdometerSpeed, BarometricHeight, MeasuredHeading>;
 
 /// What a program needs to offer a sensor's log under its name.
 struct Aiding {
@@ -25,10 +26,10 @@ struct Aiding {
   const char* log;           ///< what it is a log of
   const char* value_column;  ///< with its unit; that of the time is t_s
   const char* sigma_column;  ///< may be missing in a log
-  double largest;            ///< of the value's magnitude and of the sigma
+  double largest;            ///< of the value's magnitude and of the sigma, in the log's unit
   double default_sigma;      ///< where the log has none
   bool VehicleConfig::*is_on;
-  Reading (*reading)(Time time, double value, double sigma);
+  Reading (*reading)(Time time, double value, double sigma);  ///< as they stand in the log
 };
 
 /// One row for each reading, which is an aggregate of a time, a value and its sigma.
@@ -37,9 +38,12 @@ constexpr std::array<Aiding, sizeof...(R)> aidings_of(
     std::type_identity<std::variant<GnssFix, R...>> /*readings*/) {
   constexpr auto row = []<class T>(const T& defaults) {
     const auto& [time, value, sigma] = defaults;
-    const auto reading = [](Time t, double v, double s) -> Reading { return T{t, v, s}; };
-    return Aiding{T::kName,    T::kLog, T::kColumns[0], T::kColumns[1],
-                  T::kLargest, sigma,   T::kIsOn,       reading};
+    const auto reading = [](Time t, double v, double s) -> Reading {
+      return T{t, T::kUnit * v, T::kUnit * s};
+    };
+    return Aiding{
+        T::kName,         T::kLog,  T::kColumns[0], T::kColumns[1], T::kLargest / T::kUnit,
+        sigma / T::kUnit, T::kIsOn, reading};
   };
   return {row(R{})...};
 }

@@ -8,6 +8,7 @@
 #include "leeway/earth/fields.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "leeway/ekf/ekf.hpp"
+#include "leeway/navigator/measured_heading.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sensors/imu.hpp"
 
@@ -59,9 +60,10 @@ struct Alignment {
 /// Collects IMU data and fixes until the attitude can be told. With heading from course that is
 /// when the vehicle moves fast enough; a long wait at a standstill is normal, and yields the gyro
 /// bias. Without, it is levelled after a rest, or on the move by two fixes in a row, and its
-/// heading is left open. Fixes up to a minute apart, and positions without velocity (three, evenly
-/// spaced over 8 s and more), are levelled by what the IMU has integrated in between. No heap, no
-/// exceptions after construction.
+/// heading is left open. A measured heading takes the place of either: then the vehicle starts
+/// levelled, with that heading. Fixes up to a minute apart, and positions without velocity (three,
+/// evenly spaced over 8 s and more), are levelled by what the IMU has integrated in between. No
+/// heap, no exceptions after construction.
 class Aligner {
  public:
   /// @throws Error when the configuration is invalid.
@@ -69,6 +71,10 @@ class Aligner {
 
   /// @pre inc.dt_s > 0.
   void push(const ImuIncrement& inc);
+
+  /// A heading at the present: the gyro carries it on to the fix that aligns. Of several the
+  /// majority counts, by the newest of them; while they are even, none.
+  void push(const MeasuredHeading& heading);
 
   /// The alignment at the time of this fix, as soon as the fixes so far allow it. A fix that was
   /// cut in two for its lags is put together again. @pre is_usable(fix); increments up
@@ -79,7 +85,7 @@ class Aligner {
   template <class Archive>
   void visit(Archive& archive) {
     archive(previous_, half_, since_fix_, rest_, newest_velocity_, first_, middle_, since_first_,
-            until_middle_);
+            until_middle_, heading_, since_heading_, votes_);
   }
 
  private:
@@ -101,6 +107,8 @@ class Aligner {
   Alignment align_by_course(const GnssFix& fix, const GnssVelocity& before) const;
   Alignment level_only(const GnssFix& fix, const GnssVelocity& before, bool at_rest) const;
   void set_rest_bias(Alignment& alignment) const;
+  double carried_sigma_rad() const;
+  void turn_to_heading(Alignment& alignment) const;
 
   struct Sum {
     template <class Archive>
@@ -129,6 +137,9 @@ class Aligner {
   std::optional<GnssFix> middle_{};
   Sum since_first_{};
   Sum until_middle_{};
+  MeasuredHeading heading_{};
+  Sum since_heading_{};
+  int votes_{0};  // for the heading
 };
 
 }  // namespace leeway

@@ -19,6 +19,7 @@ struct BarometricHeight {
   static constexpr const char* kName = "barometer";
   static constexpr const char* kLog = "height log";
   static constexpr const char* kColumns[] = {"height_m", "sigma_m"};
+  static constexpr double kUnit = 1.0;     ///< of the columns, in SI
   static constexpr double kLargest = 1e5;  ///< of the height's magnitude and of the sigma
   static constexpr bool VehicleConfig::*kIsOn = &VehicleConfig::barometer;
 };

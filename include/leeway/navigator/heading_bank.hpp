@@ -56,14 +56,15 @@ class HeadingBank {
   /// that it refutes and those that agree with a heavier one.
   /// @param f  UpdateOutcome(Ekf&): a fix, or a pseudo measurement. It fills nis, gate and
   /// log_det_S.
+  /// @param of_heading  whether f is a measurement of the heading: those count for themselves
   /// @returns the outcome of best().
   template <class F>
-  UpdateOutcome update(F&& f) {
+  UpdateOutcome update(F&& f, bool of_heading = false) {
     Outcomes outcomes{};
     for (std::size_t k = 0; k < kMaxFilters; ++k) {
       if (members_[k]) outcomes[k] = f(*members_[k]);
     }
-    weigh(outcomes);
+    weigh(outcomes, of_heading);
     return outcomes[best_];
   }
 
@@ -103,7 +104,7 @@ class HeadingBank {
  private:
   using Outcomes = std::array<UpdateOutcome, kMaxFilters>;
 
-  void weigh(const Outcomes& outcomes);
+  void weigh(const Outcomes& outcomes, bool of_heading);
   std::size_t lightest_but_best() const;
   void normalize();
   void merge();
@@ -115,7 +116,8 @@ class HeadingBank {
   std::array<bool, kMaxFilters> refused_{};       // the newest fix
   std::size_t count_{0};
   std::size_t best_{0};
-  std::array<std::optional<Time>, 7> last_evidence_{};  // by the components of the measurement
+  // By the components of the measurement; at 0 that of the heading.
+  std::array<std::optional<Time>, 7> last_evidence_{};
 };
 
 }  // namespace leeway

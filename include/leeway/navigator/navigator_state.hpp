@@ -15,6 +15,7 @@
 #include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/health.hpp"
 #include "leeway/navigator/imu_screen.hpp"
+#include "leeway/navigator/measured_heading.hpp"
 #include "leeway/navigator/mount_estimator.hpp"
 #include "leeway/navigator/navigator_config.hpp"
 #include "leeway/navigator/receiver_noise.hpp"
@@ -60,8 +61,9 @@ class NavigatorState {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(imu_screen_, hole_s_, screen_, aligner_, aiding_, course_, mount_, position_noise_, velocity_noise_, C_bs_,
-            last_update_, last_fused_, gate_recovery_, incumbent_, heading_doubted_, contradicted_,
+    archive(imu_screen_, hole_s_, screen_, aligner_, aiding_, course_, mount_, position_noise_,
+            velocity_noise_, C_bs_, last_update_, last_fused_, gate_recovery_, incumbent_,
+            heading_weight_, refused_headings_, heading_doubted_, contradicted_,
             is_starting_beside_, repairs_, resets_, realignments_);
     archive.optional(bank_, any_bank());
   }
@@ -73,6 +75,8 @@ class NavigatorState {
   UpdateOutcome update(Ekf& filter, const GnssFix& fix) const;
   template <AidingReading R>
   Verdict take(const R& reading);
+  Verdict take(const MeasuredHeading& heading);
+  void doubt_heading_by(const MeasuredHeading& heading);
   void align(const GnssFix& fix);
   void begin(const HeadingBank& bank);
   void begin_vehicle();
@@ -92,6 +96,9 @@ class NavigatorState {
   bool motion_hides_heading(Time t) const;
   void realign();
 
+  // What it was chosen by: docs/theory/navigator/measured_heading.md.
+  static constexpr double kHeadingCorrelationS = 10.0;
+
   NavigatorConfig config_;
   ImuScreen imu_screen_{};
   double hole_s_{0.0};  // without IMU data, up to now
@@ -108,6 +115,8 @@ class NavigatorState {
   std::optional<Time> last_fused_{};  // fix
   GateRecovery gate_recovery_;
   std::size_t incumbent_{0};  // the best filter before the fixes that are refused
+  PositionWeight heading_weight_{kHeadingCorrelationS};
+  RefusedHeadings refused_headings_{};
   std::optional<Time> heading_doubted_{};
   std::optional<Time> contradicted_{};  // the filter, by what it cannot explain
   bool is_starting_beside_{false};  // the aligner, anew

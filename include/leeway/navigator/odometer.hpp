@@ -18,6 +18,7 @@ struct OdometerSpeed {
   static constexpr const char* kName = "odometer";
   static constexpr const char* kLog = "speed log";
   static constexpr const char* kColumns[] = {"speed_mps", "sigma_mps"};
+  static constexpr double kUnit = 1.0;       ///< of the columns, in SI
   static constexpr double kLargest = 500.0;  ///< of the speed's magnitude and of the sigma
   static constexpr bool VehicleConfig::*kIsOn = &VehicleConfig::odometer;
 };

@@ -11,9 +11,9 @@
 
 namespace leeway {
 
-/// Each part is off unless switched on; car() is the set for a road vehicle. Sigmas of constraints
-/// stand for errors that last, fused twice a second as if they were white: they are larger than
-/// what the innovations show (docs/theory/navigator/vehicle_aiding.md).
+/// Each part but the heading is off unless switched on; car() is the set for a road vehicle. Sigmas
+/// of constraints stand for errors that last, fused twice a second as if they were white: they are
+/// larger than what the innovations show (docs/theory/navigator/vehicle_aiding.md).
 struct VehicleConfig {
   VehicleKind kind{VehicleKind::kNone};
   bool zero_velocity{false};
@@ -21,6 +21,7 @@ struct VehicleConfig {
   bool non_holonomic{false};
   bool odometer{false};
   bool barometer{false};
+  bool heading{true};  ///< measured: it needs nothing of the vehicle
 
   StandstillConfig standstill{};
   double rest_sigma_mps{0.05};         ///< velocity at rest: the body on its springs
@@ -49,24 +50,24 @@ struct VehicleConfig {
   bool uses_parameters() const { return non_holonomic || odometer || barometer; }
 
   static auto visit(auto& c, const auto& visitor) {
-    return visitor(Field{"kind", c.kind}, Field{"zero_velocity", c.zero_velocity},
-                   Field{"zero_angular_rate", c.zero_angular_rate},
-                   Field{"non_holonomic", c.non_holonomic}, Field{"odometer", c.odometer},
-                   Field{"barometer", c.barometer}, Field{"standstill", c.standstill},
-                   Field{"rest_sigma_mps", c.rest_sigma_mps, kPositive},
-                   Field{"rest_turn_sigma_radps", c.rest_turn_sigma_radps, kPositive},
-                   Field{"min_speed_mps", c.min_speed_mps, kPositive},
-                   Field{"right_sigma_mps", c.right_sigma_mps, kPositive},
-                   Field{"right_sigma_m", c.right_sigma_m, kNotNegative},
-                   Field{"down_sigma_m2ps2", c.down_sigma_m2ps2, kPositive},
-                   Field{"rear_axle_x_m", c.rear_axle_x_m, between(-100.0, 100.0)},
-                   Field{"rear_axle_sigma_m", c.rear_axle_sigma_m, kNotNegative},
-                   Field{"mount_sigma_rad", c.mount_sigma_rad, kNotNegative},
-                   Field{"mount_walk_rad_per_sqrt_s", c.mount_walk_rad_per_sqrt_s, kNotNegative},
-                   Field{"odometer_scale_sigma", c.odometer_scale_sigma, kNotNegative},
-                   Field{"odometer_walk_per_sqrt_s", c.odometer_walk_per_sqrt_s, kNotNegative},
-                   Field{"height_offset_sigma_m", c.height_offset_sigma_m, kNotNegative},
-                   Field{"height_walk_m_per_sqrt_s", c.height_walk_m_per_sqrt_s, kNotNegative});
+    return visitor(
+        Field{"kind", c.kind}, Field{"zero_velocity", c.zero_velocity},
+        Field{"zero_angular_rate", c.zero_angular_rate}, Field{"non_holonomic", c.non_holonomic},
+        Field{"odometer", c.odometer}, Field{"barometer", c.barometer}, Field{"heading", c.heading},
+        Field{"standstill", c.standstill}, Field{"rest_sigma_mps", c.rest_sigma_mps, kPositive},
+        Field{"rest_turn_sigma_radps", c.rest_turn_sigma_radps, kPositive},
+        Field{"min_speed_mps", c.min_speed_mps, kPositive},
+        Field{"right_sigma_mps", c.right_sigma_mps, kPositive},
+        Field{"right_sigma_m", c.right_sigma_m, kNotNegative},
+        Field{"down_sigma_m2ps2", c.down_sigma_m2ps2, kPositive},
+        Field{"rear_axle_x_m", c.rear_axle_x_m, between(-100.0, 100.0)},
+        Field{"rear_axle_sigma_m", c.rear_axle_sigma_m, kNotNegative},
+        Field{"mount_sigma_rad", c.mount_sigma_rad, kNotNegative},
+        Field{"mount_walk_rad_per_sqrt_s", c.mount_walk_rad_per_sqrt_s, kNotNegative},
+        Field{"odometer_scale_sigma", c.odometer_scale_sigma, kNotNegative},
+        Field{"odometer_walk_per_sqrt_s", c.odometer_walk_per_sqrt_s, kNotNegative},
+        Field{"height_offset_sigma_m", c.height_offset_sigma_m, kNotNegative},
+        Field{"height_walk_m_per_sqrt_s", c.height_walk_m_per_sqrt_s, kNotNegative});
   }
 };
 

@@ -25,7 +25,7 @@ enum class Verdict : std::uint8_t {
   kOutOfOrder,   ///< IMU data older than the newest; measurements may come in any order
   kFuture,       ///< further ahead of the IMU data than max_ahead_s
   kClockJump,    ///< IMU: the clock has jumped for good; the navigator aligns anew
-  kUnused,       ///< this aiding is switched off
+  kUnused,       ///< this aiding is switched off, or tells nothing in this attitude
   kNotFinite,    ///< NaN or infinity
   kImplausible,  ///< beyond what the sensor can measure, or not a covariance
   kOverflow,     ///< more measurements wait than there is room for

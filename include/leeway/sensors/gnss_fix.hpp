@@ -29,18 +29,26 @@ struct GnssVelocity {
                                const Eigen::Matrix3d& R_n_m2ps2);
 };
 
-/// One epoch of a receiver. Either part may be missing.
+/// Heading of the body's x axis, from two antennas: clockwise from true north.
+struct GnssHeading {
+  double heading_rad{};
+  double sigma_rad{0.035};  ///< where a receiver tells none: 2 deg
+};
+
+/// One epoch of a receiver. Any part may be missing, not all. The heading is for a Navigator, which
+/// takes it as a MeasuredHeading; a filter by itself leaves it alone.
 struct GnssFix {
   Time time{};
   std::optional<GnssPosition> position{};
   std::optional<GnssVelocity> velocity{};
+  std::optional<GnssHeading> heading{};
 };
 
 /// The least standard deviation of a measurement, m or m/s. Below it squares and their inverses run
 /// out of range; no sensor claims so little.
 inline constexpr double kLeastSigma = 1e-12;
 
-/// Whether a fix can be used: it has a part, all numbers are finite and the position is within 100
+/// Whether a fix can be used: it has a position or a velocity, all numbers are finite and the position is within 100
 /// km of the ellipsoid's surface. Every covariance is symmetric and positive definite, with at
 /// least kLeastSigma given the other axes. A fix that fails is bad data: count it, use nothing of
 /// it.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "leeway/earth/rotation.hpp"
@@ -10,7 +11,16 @@ namespace {
 RowParser<GnssFix> fix_csv_parser(const LogHead&, LineReader& lines) {
   CsvHeader header = take_csv_header(lines, kPositionColumns, list_of(gnss_layouts()));
   header.use_group(kVelocityColumns);
+  if (header.has(kHeadingColumns)) header.use(kHeadingColumns);
   return GnssFields{header.parser()};
+}
+
+/// Nothing where a receiver has none, which it may say by a sigma of zero.
+std::optional<GnssHeading> heading_of(double heading_deg, double sigma_deg) {
+  if (std::isnan(heading_deg) || sigma_deg == 0.0) return std::nullopt;
+  GnssHeading heading{heading_deg * kRadPerDeg};
+  if (!std::isnan(sigma_deg)) heading.sigma_rad = sigma_deg * kRadPerDeg;
+  return heading;
 }
 
 }  // namespace
@@ -31,12 +41,14 @@ std::optional<Fault> GnssFields::operator()(std::string_view line, GnssFix& fix)
     fix.velocity = GnssVelocity::from_ned(place, vector_at(6),
                                           vector_at(9).cwiseAbs2().asDiagonal().toDenseMatrix());
   }
+  fix.heading = heading_of(values[12], values[13]);
   return std::nullopt;
 }
 
 GnssLayout gnss_csv() {
   return {"CSV",
-          "a CSV header with " + join(kPositionColumns) + " (and " + join(kVelocityColumns) + ")",
+          "a CSV header with " + join(kPositionColumns) + " (and " + join(kVelocityColumns) + "; " +
+              join(kHeadingColumns) + ")",
           [](const LogHead&) { return true; }, fix_csv_parser};
 }
 

@@ -41,9 +41,14 @@ inline constexpr std::array kVelocityColumns{NamedColumn{"vn_mps", velocity_colu
                                              NamedColumn{"vel_std_e_mps", sigma_column(10, true)},
                                              NamedColumn{"vel_std_d_mps", sigma_column(11, true)}};
 
+/// Used where a log has both; an empty sigma is the default one.
+inline constexpr std::array kHeadingColumns{
+    NamedColumn{"heading_deg", {12, -360.0, 360.0, true}},
+    NamedColumn{"heading_sigma_deg", {13, 0.0, 360.0, true}}};
+
 /// The parser of a fix whose numbers stand in those columns.
 struct GnssFields {
-  static constexpr std::size_t kSlots = 12;
+  static constexpr std::size_t kSlots = 14;
 
   LineParser fields{};
   std::optional<WeekUnroller> week{};  ///< where times are seconds of week

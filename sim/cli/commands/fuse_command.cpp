@@ -106,6 +106,20 @@ void add_log_options(CLI::App& app, FuseLogs& logs) {
                  "multiply the standard deviations of the GNSS log (default: 1,1)");
 }
 
+void add_start_options(CLI::App& app, FuseLogs& logs) {
+  CLI::Option* heading =
+      app.add_option("--start-heading-deg", logs.start_heading_deg,
+                     "heading of the vehicle at the start of the IMU log, clockwise from true "
+                     "north, deg, where it is known: no motion is needed to find it")
+          ->type_name("DEG")
+          ->check(CLI::Range(-360.0, 360.0))
+          ->excludes(app.get_option("--drive"));
+  add_default_option(app, "--start-heading-sigma-deg", logs.start_heading_sigma_deg,
+                     "standard deviation of --start-heading-deg, deg")
+      ->check(CLI::Range(1e-3, 180.0))
+      ->needs(heading);
+}
+
 void add_filter_options(CLI::App& app, FuseOptions& options) {
   add_imu_options(app, options.imu);
   add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
@@ -162,6 +176,7 @@ void add_solution_options(CLI::App& app, FuseOptions& options) {
 
 void add_options(CLI::App& app, FuseOptions& options) {
   add_log_options(app, options.logs);
+  add_start_options(app, options.logs);
   add_filter_options(app, options);
   add_vehicle_options(app, options.vehicle);
   add_timing_options(app, options.timing);

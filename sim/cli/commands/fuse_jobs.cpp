@@ -65,6 +65,10 @@ FuseJob job_of_logs(const FuseLogs& logs) {
   job.mount_rpy_deg = logs.mount_rpy_deg;
   if (logs.truth_window_s) set_truth_window(job.input, *logs.truth_window_s);
   if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);
+  if (logs.start_heading_deg) {
+    job.input.start_heading = {
+        {}, *logs.start_heading_deg * kRadPerDeg, logs.start_heading_sigma_deg * kRadPerDeg};
+  }
   return job;
 }
 
@@ -92,15 +96,32 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
   return job;
 }
 
+bool is_without(const FuseVehicle& vehicle, const VehiclePart& part) {
+  return std::any_of(vehicle.without.begin(), vehicle.without.end(),
+                     [&](const auto& name) { return is_same_name(name, part.name); });
+}
+
+/// An option that only a car has a use for, given without one; empty: there is none.
+std::string asked_of_a_car(const FuseOptions& options) {
+  const VehicleConfig has = VehicleConfig::of(options.vehicle.kind);
+  for (const VehiclePart& part : kVehicleParts) {
+    if (!(has.*part.is_on) && is_without(options.vehicle, part)) {
+      return "--without " + std::string(part.name);
+    }
+  }
+  for (std::size_t a = 0; a < kAidings.size(); ++a) {
+    const bool is_given = !options.logs.files.aidings[a].empty();
+    if (!(has.*kAidings[a].is_on) && is_given) return "--" + std::string(kAidings[a].name);
+  }
+  return {};
+}
+
 }  // namespace
 
 VehicleConfig vehicle_config(const FuseVehicle& vehicle) {
   VehicleConfig config = VehicleConfig::of(vehicle.kind);
-  if (vehicle.kind != VehicleKind::kCar) return config;
   for (const VehiclePart& part : kVehicleParts) {
-    config.*part.is_on =
-        std::none_of(vehicle.without.begin(), vehicle.without.end(),
-                     [&](const auto& name) { return is_same_name(name, part.name); });
+    if (is_without(vehicle, part)) config.*part.is_on = false;
   }
   return config;
 }
@@ -119,14 +140,8 @@ NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel
 
 std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
   const FuseLogs& logs = options.logs;
-  const bool asks_for_a_vehicle =
-      !options.vehicle.without.empty() || logs.files.aidings != sim::AidingLogs{};
-  if (options.vehicle.kind != VehicleKind::kCar && asks_for_a_vehicle) {
-    std::string names = "--without";
-    for (const Aiding& a : kAidings) {
-      names += (&a == &kAidings.back() ? " and --" : ", --") + std::string(a.name);
-    }
-    throw Error(names + " are used with --vehicle car");
+  if (const std::string asked = asked_of_a_car(options); !asked.empty()) {
+    throw Error(asked + " is used with --vehicle car");
   }
   if (logs.drives.empty() && (logs.files.imu.empty() || logs.files.gnss.empty())) {
     throw Error("fuse needs --imu and --gnss, or --drive");
@@ -140,6 +155,10 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
         vehicle.estimate_mount || (vehicle.kind == VehicleKind::kCar && !job.mount_rpy_deg);
     if (!job.estimates_mount) {
       job.input.imu_options.C_bs = mount_rotation(job.mount_rpy_deg, logs.mount_axes);
+    } else if (logs.start_heading_deg) {
+      throw Error(
+          "--start-heading-deg is of the vehicle, and the mount is not known at the start: "
+          "give --mount");
     }
     inspect(job);
   }

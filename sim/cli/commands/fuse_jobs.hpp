@@ -16,6 +16,8 @@ struct FuseLogs {
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
   std::string mount_axes{"flu"};
   std::optional<Eigen::Vector2d> gnss_sigma_scale{};  ///< of position, of velocity
+  std::optional<double> start_heading_deg{};
+  double start_heading_sigma_deg{5.0};
 };
 
 /// Aiding by what is known of the vehicle.

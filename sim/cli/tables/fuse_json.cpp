@@ -115,9 +115,12 @@ Json input_json(const FuseOptions& o, const std::string& imu_name) {
     for (std::size_t a = 0; a < kAidings.size(); ++a) {
       input[kAidings[a].name] = path_json(files.aidings[a]);
     }
-    input.update({{"truth", path_json(files.truth)},
-                  {"outages", path_json(o.logs.outages)},
-                  {"mount_rpy_deg", json_of(o.logs.mount_rpy_deg)}});
+    input.update(
+        {{"truth", path_json(files.truth)},
+         {"outages", path_json(o.logs.outages)},
+         {"mount_rpy_deg", json_of(o.logs.mount_rpy_deg)},
+         {"start_heading_deg", o.logs.start_heading_deg ? Json(*o.logs.start_heading_deg) : Json()},
+         {"start_heading_sigma_deg", o.logs.start_heading_sigma_deg}});
   } else {
     for (const auto& folder : o.logs.drives) input["drives"].push_back(folder.string());
   }

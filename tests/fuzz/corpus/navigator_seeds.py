@@ -9,6 +9,7 @@ FIX = bytes([150, 0, 200, 0]) + 3 * EXACT + bytes([0]) + 3 * EXACT + bytes([0])
 SAMPLE = bytes([130, 0]) + 6 * EXACT
 ODOMETER = bytes([205, 0, 128]) + 2 * EXACT
 BAROMETER = bytes([220, 0, 128]) + 2 * EXACT
+HEADING = bytes([226, 0, 128]) + 2 * EXACT
 START = bytes([232, 4])
 START_OPEN = bytes([232, 255])
 RESTORE = bytes([240, 0])
@@ -26,6 +27,7 @@ def drive(parts, *operations):
 SEEDS = {
     "plain": drive(0, START, 8 * (IMU + FIX), RESTORE, IMU, COPY, FIX, IMU),
     "align": drive(0, 12 * (IMU + FIX)),
+    "heading": drive(0, 12 * (HEADING + IMU + FIX)),
     "car": drive(1, START_OPEN, 6 * (IMU + FIX + ODOMETER + BAROMETER), DAMAGED, IMU),
     "mount": drive(2 + 16, 10 * (IMU + FIX), RESTORE, IMU),
     "lags": drive(4 + 64, START, 6 * (IMU + FIX), NAN_FIX, IMU, FIX),

@@ -75,6 +75,30 @@ TEST_CASE("a CSV row is a fix with covariances in ECEF, its sigmas scaled") {
              kCovarianceTolerance));
 }
 
+TEST_CASE("a heading is optional, as columns and in a row") {
+  const TempDir dir;
+  const std::string row = ",45,-80,120,2,3,4";
+  GnssLogReader reader(dir.file("a.csv", kPositionHeader + ",heading_deg,heading_sigma_deg\n1" +
+                                             row + ",270,0.5\n2" + row + ",-90,\n3" + row +
+                                             ",,0.5\n4" + row + ",nan,nan\n5" + row + ",0,0\n"));
+  const auto fixes = all(reader);
+  REQUIRE(fixes.size() == 5);
+  constexpr double kAngleTolerance = 1e-15;  // rad: rounding of a product
+  CHECK(near(fixes[0].heading->heading_rad, 270.0 * kRadPerDeg, kAngleTolerance));
+  CHECK(near(fixes[0].heading->sigma_rad, 0.5 * kRadPerDeg, kAngleTolerance));
+  CHECK(near(fixes[1].heading->heading_rad, -90.0 * kRadPerDeg, kAngleTolerance));
+  CHECK(fixes[1].heading->sigma_rad == GnssHeading{}.sigma_rad);
+  for (std::size_t k = 2; k < 5; ++k) CHECK_FALSE(fixes[k].heading);
+  CHECK(reader.summary().damaged_lines() == 0);
+
+  // By itself the column may be anything, such as the course.
+  GnssLogReader other(dir.file("b.csv", kPositionHeader + ",heading_deg\n1" + row + ",270\n"));
+  CHECK_FALSE(all(other)[0].heading);
+  GnssLogReader damaged(dir.file(
+      "c.csv", kPositionHeader + ",heading_deg,heading_sigma_deg\n1" + row + ",361,0.5\n"));
+  CHECK(all(damaged).empty());
+}
+
 TEST_CASE("velocity is optional, as columns and in a row") {
   const TempDir dir;
   GnssLogReader bare(dir.file("a.csv", kPositionHeader + "\n1,45,-80,120,2,3,4\n"));

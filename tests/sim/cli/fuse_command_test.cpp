@@ -178,6 +178,41 @@ TEST_CASE("fuse --vehicle car finds the mount, and takes an odometer that reads 
   CHECK(on.at("rms").at("velocity_mps") < 1.1 * found.at("rms").at("velocity_mps").get<double>());
 }
 
+TEST_CASE("fuse takes a heading: in its own log, in that of the receiver, or told at the start") {
+  const TempDir dir;
+  leeway("simulate --trajectory static --duration-s 40 --imu-rate-hz 50 " + Simulated::imu_model() +
+         " --out " + quoted(dir / ""));
+  // The nose of the body at rest is north.
+  std::string headings = "t_s,heading_deg,heading_sigma_deg\n";
+  std::string fixes;
+  for (const std::string& line : lines_of(dir / "gnss.csv")) {
+    const bool is_header = line.starts_with("t_s");
+    fixes += line + (is_header ? ",heading_deg,heading_sigma_deg" : ",359.5,0.5") + "\n";
+    if (!is_header) headings += line.substr(0, line.find(',')) + ",0.5,0.5\n";
+  }
+  const auto by_receiver = dir.file("fixes.csv", fixes);
+  const std::string by_log = " --heading " + quoted(dir.file("heading.csv", headings));
+  const std::string rest = " --vehicle walker --json --truth " + quoted(dir / "truth.csv");
+  const std::string plain = Simulated::fuse(dir / "imu.csv", dir / "gnss.csv") + rest;
+  const auto attitude_deg = [](const std::string& command) {
+    const Outcome outcome = leeway(command);
+    CHECK(outcome.exit_code == 0);
+    return outcome.json().at("results").at("rms").at("attitude_deg").get<double>();
+  };
+  // A tactical gyro does not find north in 40 s.
+  const json open = leeway(plain).json().at("results").at("solution").at("health");
+  CHECK(open.at("state") == "heading_open");
+  // 0.5 deg of heading, and the tilt of an accelerometer of this class.
+  CHECK(near(attitude_deg(plain + by_log), 0.5, 0.3));
+  CHECK(near(attitude_deg(Simulated::fuse(dir / "imu.csv", by_receiver) + rest), 0.5, 0.3));
+  CHECK(near(attitude_deg(plain + " --start-heading-deg=-3"), 3.0, 0.5));
+  const json told = leeway(plain + " --start-heading-deg 3 --start-heading-sigma-deg 2").json();
+  CHECK(told.at("input").at("start_heading_deg") == 3.0);
+  CHECK(told.at("input").at("start_heading_sigma_deg") == 2.0);
+  const json off = leeway(plain + by_log + " --without heading").json().at("results");
+  CHECK(off.at("verdicts").at("unused") > 30);
+}
+
 TEST_CASE("fuse takes a log through a pipe") {
   CHECK(near(horizontal_rms_m(Simulated::fuse("/dev/stdin", simulated().gnss) + " --truth " +
                                   quoted(simulated().truth),

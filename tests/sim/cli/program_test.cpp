@@ -108,6 +108,9 @@ TEST_CASE("wrong usage exits with 1 and one line that names what is wrong") {
       {fuse + " --without non-holonomic", "--vehicle car"},
       {fuse + " --vehicle car --without wheels", "wheels"},
       {fuse + " --odometer x", "--vehicle car"},
+      {fuse + " --vehicle car --start-heading-deg 10", "give --mount"},
+      {fuse + " --start-heading-deg 400", "start-heading-deg"},
+      {fuse + " --start-heading-sigma-deg 4", "start-heading-deg"},
       {fuse + " --estimate-mount --mount 0,0,0", "--mount"},
       {fuse + " --velocity-lag-s 100", "velocity_lag_s"},
   };

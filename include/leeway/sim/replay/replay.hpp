@@ -37,6 +37,8 @@ struct ReplayInput {
   /// Truth outside this window is not used.
   double truth_from_s{-1e300};
   double truth_to_s{1e300};
+  /// Heading at the first IMU data, for the alignment; its time does not count.
+  std::optional<MeasuredHeading> start_heading{};
   /// Where to start; without it the navigator aligns.
   std::optional<Alignment> start{};
 };
