@@ -28,7 +28,8 @@ void add_unseen_motion(ErrorMatrix& P, const Eigen::Vector3d& r_e_m, double dt_s
   const double velocity_m2ps2 = added([](double t_s) { return kBridgeAccelerationMps2 * t_s; });
   const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
   const Eigen::Vector3d psi_n_rad2(tilt_rad2, tilt_rad2, turn_rad2);
-  P.block<3, 3>(kPsi, kPsi) += C_en * psi_n_rad2.asDiagonal() * C_en.transpose();
+  const Eigen::Matrix3d psi_e_rad2 = C_en * psi_n_rad2.asDiagonal() * C_en.transpose();
+  P.block<3, 3>(kPsi, kPsi) += 0.5 * (psi_e_rad2 + psi_e_rad2.transpose());
   P.diagonal().segment<3>(kDv).array() += velocity_m2ps2;
   P.diagonal().segment<3>(kDr).array() += velocity_m2ps2 * dt_s * dt_s / 3.0;
   P.block<3, 3>(kDv, kDr).diagonal().array() += 0.5 * velocity_m2ps2 * dt_s;

@@ -123,7 +123,7 @@ void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
   // p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
   const double root = gnss_position_weight(since_s, kEvidenceCorrelationS);
   const double weight = root * root;
-  const bool are_rivals = count_ <= kMaxRivals;
+  const bool are_rivals = incumbent_ && count_ <= kMaxRivals;
   std::array<double, kMaxFilters> surprise{};
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
@@ -136,12 +136,12 @@ void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
       drop(k);
       continue;
     }
-    log_weight_[k] *= 1.0 - weight / kMemory;
-    if (are_rivals && refuses && refused_before[k]) {
+    if (are_rivals && k == *incumbent_ && refuses && refused_before[k]) {
       log_weight_[k] -= kErrorEndsPerS * since_s;
       surprise[k] = std::numeric_limits<double>::lowest();
       continue;
     }
+    log_weight_[k] *= 1.0 - weight / kMemory;
     if (broken) surprise[k] = 0.0;  // the last one stays, whatever it is
     least = std::min(least, surprise[k]);
   }
@@ -185,26 +185,35 @@ void HeadingBank::merge() {
 }
 
 // Members that differ by little more than each is uncertain are one filter that is as uncertain as
-// all of them.
+// all of them, in their middle.
 void HeadingBank::join() {
-  constexpr double kLittleMore = 4.0;  // in variance
+  constexpr double kLittleMore = 3.0;  // in variance
   if (collapsed()) return;
+  const ErrorVector within = best().kernel().matrix().diagonal();
+  if ((covariance().diagonal().array() > kLittleMore * within.array()).any()) return;
+  ErrorVector middle = ErrorVector::Zero();
   ErrorMatrix between = ErrorMatrix::Zero();
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     if (!members_[k] || k == best_) continue;
     const ErrorVector x = difference(members_[k]->estimate(), best().estimate());
-    between += std::exp(log_weight_[k]) * x * x.transpose();
+    const double weight = std::exp(log_weight_[k]);
+    middle += weight * x;
+    between += weight * x * x.transpose();
+    drop(k);
   }
-  const ErrorVector within = best().kernel().matrix().diagonal();
-  if ((covariance().diagonal().array() > kLittleMore * within.array()).any()) return;
-  for (std::size_t k = 0; k < kMaxFilters; ++k) {
-    if (members_[k] && k != best_) drop(k);
-  }
-  edit(best(), [&](Belief& belief) { belief.P += between; });
+  edit(best(), [&](Belief& belief) {
+    inject(belief.estimate, middle);
+    belief.P += between - middle * middle.transpose();
+  });
   normalize();
 }
 
-void HeadingBank::challenge(const Ekf& rival, double odds, std::size_t max_count) {
+void HeadingBank::challenge(const Ekf& rival, double odds) {
+  if (!incumbent_) incumbent_ = best_;
+  add(rival, odds, kMaxRivals);
+}
+
+void HeadingBank::add(const Ekf& rival, double odds, std::size_t max_count) {
   if (count_ >= max_count) drop(lightest_but_best());
   std::size_t free = 0;
   while (members_[free]) ++free;
@@ -238,6 +247,7 @@ std::size_t HeadingBank::lightest_but_best() const {
 void HeadingBank::drop(std::size_t k) {
   members_[k].reset();
   --count_;
+  if (incumbent_ == k || collapsed()) incumbent_.reset();
 }
 
 ErrorMatrix HeadingBank::covariance() const {

@@ -36,4 +36,12 @@ std::optional<HeadingBank> bank_of_headings(const Ekf& filter, double sigma_rad,
   return bank;
 }
 
+bool is_sane(HeadingBank& bank) {
+  bool all = true;
+  bank.for_each([&](const Ekf& filter) {
+    all = all && leeway::is_sane(filter.estimate(), filter.kernel().matrix());
+  });
+  return all;
+}
+
 }  // namespace leeway

@@ -22,4 +22,7 @@ HeadingBank bank_around(const EkfConfig& config, const Estimate& estimate, Error
 std::optional<HeadingBank> bank_of_headings(const Ekf& filter, double sigma_rad,
                                             double course_turns_s = 0.0);
 
+/// is_sane() of all its filters.
+bool is_sane(HeadingBank& bank);
+
 }  // namespace leeway

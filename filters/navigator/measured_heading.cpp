@@ -78,7 +78,7 @@ void NavigatorState::doubt_heading_by(const MeasuredHeading& heading) {
   if (!refused_headings_.refused(now, innovation_rad, heading.sigma_rad)) return;
   auto headings = bank_of_headings(doubted, HeadingBank::kWholeCircleRad);
   if (!headings) return;
-  headings->challenge(doubted, 1.0, HeadingBank::kMaxFilters);
+  headings->add(doubted, 1.0);
   bank_ = *headings;
   heading_weight_ = PositionWeight(kHeadingCorrelationS);  // the next one counts in full
 }

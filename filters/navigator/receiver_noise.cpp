@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
 constexpr double kSmallestRatio = 0.125;   // of one fix: one in 18, six in a row once in 3e7
-constexpr double kLastingSurprise = 16.3;  // 1e-3: of errors that last 30 s once in 8 h
+constexpr double kLastingSurprise = 3.8;   // 1e-2: of errors that last 30 s once in 50 min
 constexpr double kRecentFixes = 10.0;
 constexpr double kLargestNis = 30.0;         // one alone is no reason to doubt
 constexpr double kLargestNisRatio = 25.0;   // two outliers in a row shall not count for ever
@@ -73,7 +73,7 @@ void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen:
                          double nis, bool is_white) {
   note_claim(nis);
   is_surprising_ =
-      is_white ? cusum_.push(std::min(nis, kLargestNis), 3) : nis > kLastingSurprise;
+      is_white ? cusum_.push(std::min(nis, kLargestNis), 3) : recent_nis_ratio_ > kLastingSurprise;
   if (is_white) note_mean(R.llt().matrixL().solve(innovation), nis);
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;

@@ -71,7 +71,11 @@ class HeadingBank {
   /// Sets another filter beside the others, of which the lightest goes when there are too many:
   /// later measurements tell which is right, and until then covariance() spans them.
   /// @param odds  of it to best(), > 0
-  void challenge(const Ekf& rival, double odds, std::size_t max_count = kMaxRivals);
+  void add(const Ekf& filter, double odds, std::size_t max_count = kMaxFilters);
+
+  /// The same, where best() refuses a fix. Errors of a receiver last: that the incumbent goes on to
+  /// refuse says little more, as long as it did so at once.
+  void challenge(const Ekf& rival, double odds);
 
   bool collapsed() const { return count_ == 1; }
   std::size_t count() const { return count_; }
@@ -98,7 +102,7 @@ class HeadingBank {
   void visit(Archive& archive) {
     const Ekf any = best();
     for (std::optional<Ekf>& member : members_) archive.optional(member, any);
-    archive(log_weight_, refused_, count_, best_, last_evidence_);
+    archive(log_weight_, refused_, count_, best_, incumbent_, last_evidence_);
   }
 
  private:
@@ -116,6 +120,7 @@ class HeadingBank {
   std::array<bool, kMaxFilters> refused_{};       // the newest fix
   std::size_t count_{0};
   std::size_t best_{0};
+  std::optional<std::size_t> incumbent_{};  // which was the best before it was challenged
   // By the components of the measurement; at 0 that of the heading.
   std::array<std::optional<Time>, 7> last_evidence_{};
 };

@@ -121,7 +121,9 @@ TEST_CASE("two members in closed form: weights by likelihood, covariance within 
   CHECK(near(bank.best_weight(), 0.5, 1e-12));
   // Long after, a measurement stands alone. Of the difference of 4 the first 2 do not count: odds
   // of exp(-0.5 * 2).
-  bank.for_each([](Ekf& filter) { bridge(filter, time_from_seconds(100.0), 1.0); });
+  bank.for_each([](Ekf& filter) {
+    edit(filter, [](Belief& belief) { belief.estimate.nav.time = time_from_seconds(100.0); });
+  });
   bank.update(reporting([](double turn_rad) { return turn_rad > 0.0 ? 3.0 : 7.0; }));
   REQUIRE(bank.count() == 2);
   const double w = 1.0 / (1.0 + std::exp(-1.0));
@@ -148,7 +150,7 @@ TEST_CASE("measurements close in time repeat each other: their evidence counts i
   HeadingBank often = once;
   const double again_s = 0.1;
   often.for_each([&](Ekf& filter) {
-    bridge(filter, time_from_seconds(again_s), unseen_turn_rad(again_s));
+    bridge(filter, time_from_seconds(again_s));
   });
   often.update(unequal);
   // Correlated over 2 s; and of the older evidence a tenth is forgotten with each whole

@@ -211,6 +211,7 @@ TEST_CASE("fixes twice, in any order, too many, and an outlier") {
   CHECK(clean.push(fix_at(1.5)) == Verdict::kAccepted);
   GnssFix outlier = fix_at(1.7);
   outlier.position->r_e_m += Eigen::Vector3d(0.0, 0.0, 100.0);
+  outlier.velocity->v_e_mps += Eigen::Vector3d(0.0, 0.0, 50.0);
   CHECK(navigator.push(outlier) == Verdict::kAccepted);
   // The flush before the gate is the same at any time: refused there, the outlier moves no estimate
   // and leaves P as a propagation in two pieces would.

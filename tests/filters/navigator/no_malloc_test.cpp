@@ -46,7 +46,7 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
       GnssFix fix = log.fixes[0];
       fused += ekf.update(fix).outcome == UpdateOutcome::Outcome::kFused;
       for (std::size_t k = 50; k < 100; ++k) ekf.predict(log.imu[k]);
-      bridge(ekf, time_from_seconds(1.5), 0.1);
+      bridge(ekf, time_from_seconds(1.5));
       fix = log.fixes[1];
       fix.velocity.reset();
       fused += ekf.update(fix).outcome == UpdateOutcome::Outcome::kFused;

@@ -39,7 +39,7 @@ struct Receiver {
       const Eigen::Vector3d z =
           Eigen::Matrix3d(llt.matrixL()) * (truth * random.normal3()) + offset;
       const double nis = z.dot(llt.solve(z)) / (scale.sigma_scale() * scale.sigma_scale());
-      scale.note(time_from_seconds(interval_s * k), z, R, nis);
+      scale.note(time_from_seconds(interval_s * k), z, R, nis, true);
       each(scale);
     }
     return scale;
@@ -129,7 +129,7 @@ TEST_CASE("no more than a thousandfold, whatever comes; a single outlier moves n
   CHECK(Receiver{.truth = 1e4}.run(0.5, 1, 5000).sigma_scale() > 9.9);
   ReceiverNoise scale = Receiver{}.run(0.5, 1, 100);
   const double before = scale.sigma_scale();
-  scale.note(time_from_seconds(50.0), {1e6, 0.0, 0.0}, claimed(), 1e12);
+  scale.note(time_from_seconds(50.0), {1e6, 0.0, 0.0}, claimed(), 1e12, true);
   CHECK(near(scale.sigma_scale(), before, 0.02));  // one step at most
 }
 

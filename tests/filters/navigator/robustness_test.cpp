@@ -307,11 +307,11 @@ TEST_CASE("single 100 m outlier" * doctest::test_suite("heavy")) {
     without.on_fix = [](GnssFix& fix) { return fix.time != time_from_seconds(60.5); };
     drive.run(70.0);
     without.run(70.0);
-    CHECK(drive.count(Verdict::kGated) == 1);
-    // A fix that is refused moves nothing: only rounding differs, P being propagated in two pieces.
+    CHECK(drive.count(Verdict::kPartly) == 1);
+    // The position moves nothing. The velocity, which is right, is that of one fix in sixty.
     CHECK((drive.navigator.solution().nav.r_e_m - without.navigator.solution().nav.r_e_m).norm() <
-          1e-3);
-    CHECK(std::abs(drive.sigma_m() - without.sigma_m()) < 1e-3);
+          0.1 * drive.sigma_m());
+    CHECK(std::abs(drive.sigma_m() - without.sigma_m()) < 0.01 * drive.sigma_m());
     CHECK(drive.health().state == Health::State::kAligned);
   });
 }
@@ -344,7 +344,7 @@ TEST_CASE("velocity outliers") {
       return true;
     };
     drive.run(120.0);
-    CHECK(drive.count(Verdict::kGated) == 10);
+    CHECK(drive.count(Verdict::kPartly) == 10);
     CHECK(drive.error_m() < 8.0);
     MESSAGE("velocity scale " << drive.health().velocity_sigma_scale);
     CHECK(drive.health().velocity_sigma_scale < 1.4);
