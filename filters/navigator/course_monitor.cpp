@@ -32,10 +32,13 @@ bool CourseMonitor::push(const GnssFix& fix, const Ekf& filter) {
       std::hypot(std::sqrt(fix.velocity->R_e_m2ps2.diagonal().maxCoeff()), kAxleM * turn_radps) /
       speed_mps;
   const double change_rad = wrap_pi(difference_rad - offset_rad_);
-  const double variance_rad2 = offset_variance_rad2_ + std::pow(heading_sigma_rad(filter), 2) +
-                               course_rad * course_rad + drift_rad_ * drift_rad_;
-  const double share =
-      previous_ ? std::clamp(to_seconds(fix.time - *previous_) / kLearnS, 0.0, 1.0) : 0.0;
+  const double heading_rad2 = std::pow(heading_sigma_rad(filter), 2);
+  const double variance_rad2 =
+      offset_variance_rad2_ + heading_rad2 + course_rad * course_rad + drift_rad_ * drift_rad_;
+  // A heading that is less sure than the difference tells little of it.
+  const double known = offset_variance_rad2_ / (offset_variance_rad2_ + heading_rad2);
+  const double since_s = previous_ ? to_seconds(fix.time - *previous_) : 0.0;
+  const double share = known * std::clamp(since_s / kLearnS, 0.0, 1.0);
   previous_ = fix.time;
   offset_rad_ = wrap_pi(offset_rad_ + share * change_rad);
   offset_variance_rad2_ += share * (kSteadyRad * kSteadyRad - offset_variance_rad2_);

@@ -209,7 +209,8 @@ void HeadingBank::join() {
 }
 
 void HeadingBank::challenge(const Ekf& rival, double odds) {
-  if (!incumbent_) incumbent_ = best_;
+  constexpr double kTrustedScale = 2.0;  // who doubts its own IMU has no standing
+  if (!incumbent_ && best().inertial().noise_scale() < kTrustedScale) incumbent_ = best_;
   add(rival, odds, kMaxRivals);
 }
 

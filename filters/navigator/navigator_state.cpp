@@ -169,8 +169,10 @@ bool NavigatorState::moves() const {
 // far noisier one than it is, a second start is weighed against the filter.
 void NavigatorState::start_beside(const GnssFix& fix) {
   constexpr double kDoubtedScale = 4.0;
+  constexpr double kBrokenScale = 100.0;  // no other attitude would mend it
   const Ekf filter = bank_->best();
-  if (!bank_->collapsed() || filter.inertial().noise_scale() < kDoubtedScale ||
+  const double scale = filter.inertial().noise_scale();
+  if (!bank_->collapsed() || scale < kDoubtedScale || scale > kBrokenScale ||
       was_opened(fix.time)) {
     is_starting_beside_ = false;
     return;
