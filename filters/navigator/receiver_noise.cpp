@@ -10,6 +10,7 @@ namespace leeway {
 namespace {
 
 constexpr double kLargestRatio = 4.0;       // of one fix: a single outlier is the gate's business
+constexpr double kUnexplained = 16.3;      // 1e-3, 3 degrees of freedom
 constexpr double kSmallestRatio = 0.125;   // of one fix: one in 18, six in a row once in 3e7
 constexpr double kLastingSurprise = 3.8;   // 1e-2: of errors that last 30 s once in 50 min
 constexpr double kRecentFixes = 10.0;
@@ -83,7 +84,8 @@ void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen:
   constexpr double kExpected = 2.0 * 3.0;
   const double largest = kLargestRatio * sigma_scale_ * sigma_scale_;
   const double ratio = change.dot(R.llt().solve(change)) / kExpected;
-  surprises_ = ratio > largest ? surprises_ + 1 : 0;
+  // A filter that foretells little explains such changes itself.
+  surprises_ = ratio > largest && nis > kUnexplained ? surprises_ + 1 : 0;
   if (surprises_ > kNoOutliers) {
     sigma_scale_ = std::min(2.0 * sigma_scale_, kLargestScale);
     change_ratio_ = sigma_scale_ * sigma_scale_;
