@@ -73,7 +73,7 @@ void NavigatorState::watch_course(const GnssFix& fix) {
   if (!tells || !fix.velocity || last_update_.outcome != UpdateOutcome::Outcome::kFused) return;
   if (!course_.push(fix, bank_->best())) return;
   contradicted_ = fix.time;
-  doubt_heading(bank_->best(), bank_->best());
+  is_course_wrong_ = true;
 }
 
 bool NavigatorState::was_opened(Time now) const {
@@ -197,12 +197,15 @@ void NavigatorState::challenge(const GnssFix& fix, double odds) {
   const auto rival = [&](const Ekf& filter) {
     return rival_of(filter, fix, last_update_, unseen_mps);
   };
-  // Where a part was fused the filter is near: nothing else is in doubt for now.
-  const bool is_part = last_update_.fused_in_part;
+  // Where a part was fused the filter is near: nothing else is in doubt for a while.
+  const bool is_part = last_update_.fused_in_part && odds < 1.0;
   const Ekf& doubting = is_part ? bank_->best() : bank_->most_doubting();
   const double scale = doubting.inertial().noise_scale();
   const bool is_repeated = gate_recovery_.is_repeated() && !is_part;
-  if (is_repeated && doubt_heading(rival(bank_->best()), rival(doubting))) return;
+  if (is_repeated && !refuses_position_alone(last_update_) &&
+      doubt_heading(rival(bank_->best()), rival(doubting))) {
+    return;
+  }
   if (bank_->count() > HeadingBank::kMaxRivals) {
     if (is_repeated) bank_->for_each([&](Ekf& filter) { filter = rival(filter); });
     return;
