@@ -9,7 +9,8 @@
 
 namespace leeway {
 
-/// Looks at fixes before a filter does. No heap, no exceptions.
+/// Looks at fixes before a filter does. No heap, no exceptions. Source:
+/// docs/theory/navigator/screens.md.
 class FixScreen {
  public:
   enum class Finding : std::uint8_t {

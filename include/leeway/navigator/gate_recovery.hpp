@@ -70,9 +70,9 @@ class GateRecovery {
 bool refuses_position_alone(const UpdateOutcome& refusal);
 
 /// The filter as it is if the fix is right. Where the position alone was refused, that begins anew.
-/// Else position and velocity anew, as the fix has them, and an
-/// attitude, biases and an IMU as much less certain as the refusal suggests. A velocity that the
-/// fix lacks is the filter's own, with as much sigma as the vehicle can have changed it by.
+/// Else position and velocity do, as the fix has them, and attitude, biases and IMU are less
+/// certain, by as much as the refusal suggests. A velocity that the fix lacks is the filter's own,
+/// with as much sigma as the vehicle can have changed it by.
 /// @param unseen_mps  1 sigma of that
 /// @pre fix.position, and is_usable(fix).
 Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal,

@@ -15,7 +15,8 @@ struct Health {
     kAligned,       ///< as it should be
     kCoasting,      ///< no fix was fused for longer than 2 s
     kGating,        ///< fixes come, and are refused
-    kInconsistent,  ///< innovations are larger than the filter claims, or the IMU cannot be right
+    kInconsistent,  ///< innovations are larger than the filter claims, the IMU cannot be right, or
+                    ///< something contradicted the filter within the last 60 s
   };
 
   State state{State::kAligning};

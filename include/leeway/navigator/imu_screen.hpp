@@ -11,7 +11,7 @@ namespace leeway {
 
 /// Watches the six axes for a value that stays the same to the last bit: a sensor that is stuck, or
 /// at the end of its range. One that has never changed has no noise, and is a simulation. No heap,
-/// no exceptions.
+/// no exceptions. Source: docs/theory/navigator/screens.md.
 class ImuScreen {
  public:
   static constexpr double kHeldS = 0.25;        ///< and at least

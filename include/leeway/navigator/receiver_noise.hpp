@@ -51,8 +51,8 @@ class ReceiverNoise {
   /// Of three components judged with the present scale, fused or gated.
   /// @param innovation  measured - predicted
   /// @param R           as claimed, not scaled
-  /// @param is_white    whether the receiver's errors differ from fix to fix: else a row of them is as
-  ///                    one, and no surprise
+  /// @param is_white    whether the receiver's errors differ from fix to fix: else a row of them is
+  ///                    as one, and no surprise
   void note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, double nis,
             bool is_white);
 

@@ -2,6 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <utility>
+
+#include "leeway/earth/earth.hpp"
+#include "leeway/earth/rotation.hpp"
 #include "leeway/model/initial_covariance.hpp"
 
 namespace leeway {
@@ -103,6 +108,41 @@ TEST_CASE("the rival is where the fix says, antenna and IMU told apart, attitude
   // Refused again, it doubts attitude and biases too, as far as the refusal goes.
   const Ekf second = rival_of(rival, fix, refusal, 1.0);
   CHECK(second.covariance()(kBg, kBg) == doctest::Approx(10.0 * filter.covariance()(kBg, kBg)));
+}
+
+TEST_CASE("where the position alone was refused the rival doubts nothing else") {
+  EkfConfig config;
+  config.lever_arm_b_m = {1.0, 0.5, -2.0};
+  Estimate estimate = filter_at(10.0).estimate();
+  estimate.nav.q_eb = Eigen::Quaterniond(rotation_from_euler({0.1, -0.2, 0.7}));
+  estimate.bias = {{0.1, -0.2, 0.3}, {1e-3, 2e-3, -3e-3}};
+  Ekf filter(config, estimate, filter_at(10.0).covariance());
+  filter.scale_imu_noise(3.0);
+  const GnssFix fix = fix_at(10.0, 50.0);
+  UpdateOutcome refusal;
+  refusal.nis = 502.0;
+  refusal.gate = 40.0;
+  refusal.position_nis = 500.0;
+  refusal.velocity_nis = 2.0;
+  refusal.fused_in_part = true;
+  REQUIRE(refuses_position_alone(refusal));
+  const Ekf rival = rival_of(filter, fix, refusal, 1.0);
+  const Eigen::Vector3d antenna_e_m =
+      rival.estimate().nav.r_e_m + rival.estimate().nav.q_eb * config.lever_arm_b_m;
+  CHECK((antenna_e_m - fix.position->r_e_m).norm() < 1e-6);  // m: rounding at the Earth's radius
+  // The rest is copied: to the bit.
+  CHECK(rival.estimate().nav.v_e_mps == filter.estimate().nav.v_e_mps);
+  CHECK(rival.estimate().nav.q_eb.coeffs() == filter.estimate().nav.q_eb.coeffs());
+  CHECK(rival.estimate().bias.b_a_mps2 == filter.estimate().bias.b_a_mps2);
+  CHECK(rival.estimate().bias.b_g_radps == filter.estimate().bias.b_g_radps);
+  CHECK(rival.inertial().noise_scale() == 3.0);
+  ErrorVector variance = filter.covariance().diagonal();
+  variance.segment<3>(kDr) = fix.position->R_e_m2.diagonal();
+  CHECK(rival.covariance().diagonal() == variance);
+  // Where the velocity was refused, and the position fused, the whole is in doubt.
+  std::swap(refusal.position_nis, refusal.velocity_nis);
+  CHECK_FALSE(refuses_position_alone(refusal));
+  CHECK(rival_of(filter, fix, refusal, 1.0).inertial().noise_scale() == 6.0);
 }
 
 }  // namespace

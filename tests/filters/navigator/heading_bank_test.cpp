@@ -196,6 +196,104 @@ TEST_CASE("members that agree become one, with the weight of both") {
   CHECK(bank.covariance() == bank.best().covariance());
 }
 
+TEST_CASE("members that differ by little more than their sigma are joined in their middle") {
+  const ErrorMatrix P = diagonal_covariance();
+  const Ekf heavy(EkfConfig{}, at_equator(), P);
+  // One and a half sigma of position (2 m) and velocity (0.1 m/s): too far to be the same, and the
+  // variance of the two is below three times that of one.
+  Estimate estimate = at_equator();
+  estimate.nav.r_e_m.y() += 3.0;
+  estimate.nav.v_e_mps.z() += 0.15;
+  HeadingBank bank(heavy);
+  bank.add(Ekf(EkfConfig{}, estimate, P), 0.5);
+  REQUIRE(bank.count() == 2);
+  bank.update(reporting([](double) { return 3.0; }));
+  REQUIRE(bank.collapsed());
+  // A tenth of what was known is forgotten with a measurement.
+  const double odds = std::pow(0.5, 0.9);
+  const double w = odds / (1.0 + odds);
+  const NavState& nav = bank.best().estimate().nav;
+  // Rounding of ECEF coordinates, and of numbers of the order of 1.
+  CHECK(near(nav.r_e_m, at_equator().nav.r_e_m + Eigen::Vector3d(0.0, 3.0 * w, 0.0), 2e-9));
+  CHECK(near(nav.v_e_mps, Eigen::Vector3d(0.0, 0.0, 0.15 * w), 1e-14));
+  ErrorVector x = ErrorVector::Zero();
+  x(kDr + 1) = 3.0;
+  x(kDv + 2) = 0.15;
+  const ErrorMatrix expected = P + w * (1.0 - w) * x * x.transpose();
+  CHECK(near(bank.covariance(), expected, 1e-8));  // m^2: the rounding of 3 m, squared
+}
+
+namespace {
+
+struct Weights {
+  double incumbent;
+  double other;
+  double rival;
+};
+
+/// Of three filters 1 km apart: one challenged, one beside it, and the rival. Both of the first
+/// refuse the fixes of 1 s and 2 s; the rival, of 1 s, explains the second.
+Weights after_two_refusals(double imu_scale, double interval_s) {
+  constexpr double kApartM = 1e3;
+  const ErrorMatrix P = diagonal_covariance();
+  const auto filter_at = [&](double y_m, double z_m) {
+    Estimate estimate = at_equator();
+    estimate.nav.r_e_m += Eigen::Vector3d(0.0, y_m, z_m);
+    return Ekf(EkfConfig{}, estimate, P);
+  };
+  const auto fix = [](double t_s, auto explains) {
+    return [=](const Ekf& filter) {
+      const bool fuses = explains(filter.estimate().nav.r_e_m);
+      UpdateOutcome outcome;
+      outcome.time = time_from_seconds(t_s);
+      outcome.dof = 6;
+      outcome.gate = 40.0;
+      outcome.nis = fuses ? 6.0 : 500.0;
+      outcome.outcome = fuses ? Outcome::kFused : Outcome::kGated;
+      return outcome;
+    };
+  };
+  HeadingBank bank(filter_at(0.0, 0.0));
+  bank.best().scale_imu_noise(imu_scale);
+  bank.add(filter_at(kApartM, 0.0), 1.0);
+  bank.update(fix(0.0, [](const Eigen::Vector3d&) { return true; }));
+  bank.update(fix(0.5 * interval_s, [](const Eigen::Vector3d&) { return false; }));
+  bank.challenge(filter_at(0.0, kApartM), 0.5);
+  bank.update(fix(interval_s, [](const Eigen::Vector3d& r_e_m) { return r_e_m.z() > 1.0; }));
+  REQUIRE(bank.count() == 3);
+  // About the best, the distance of each of the others shows its weight.
+  const ErrorMatrix spread = (bank.covariance() - P) / (kApartM * kApartM);
+  const bool is_rival_best = bank.best().estimate().nav.r_e_m.z() > 1.0;
+  const double other = spread(kDr + 1, kDr + 1);
+  const double first = is_rival_best ? spread(kDr + 2, kDr + 2) - other : bank.best_weight();
+  return {first, other, 1.0 - first - other};
+}
+
+}  // namespace
+
+TEST_CASE("an incumbent that goes on to refuse loses 0.1 nats per second, any other at once") {
+  constexpr double kIntervalS = 2.0;
+  const double b = std::tanh(0.5 * kIntervalS / 2.0);
+  // Two fifths, two fifths and one fifth; a tenth of what is known goes, but for the incumbent.
+  const double kept = 1.0 - b / 10.0;
+  const double at_once = 0.5 * b * (40.0 - 6.0 - 2.0);  // the gate, to the best NIS, less 2
+  const double other = std::pow(0.4, kept) * std::exp(-at_once);
+  const double rival = std::pow(0.2, kept);
+  // Rounding, magnified by distances of 1 km in coordinates of 6400 km: 1e-9 m / 1e3 m.
+  constexpr double kTolerance = 1e-11;
+  {
+    const Weights seen = after_two_refusals(1.0, kIntervalS);
+    const double incumbent = 0.4 * std::exp(-0.1 * kIntervalS);
+    const double sum = incumbent + other + rival;
+    CHECK(near(seen.incumbent, incumbent / sum, kTolerance));
+    CHECK(near(seen.other, other / sum, kTolerance));
+  }
+  // Who takes its own IMU for twice as noisy as it should be has no standing.
+  const Weights seen = after_two_refusals(2.0, kIntervalS);
+  CHECK(near(seen.incumbent, other / (2.0 * other + rival), kTolerance));
+  CHECK(near(seen.other, seen.incumbent, kTolerance));
+}
+
 TEST_CASE("at rest heading stays unknown: ten minutes do not make a false choice" *
           doctest::test_suite("heavy")) {
   struct Case {
