@@ -13,7 +13,6 @@ constexpr double kLeastSpeedMps = 5.0;  // a car backs more slowly
 constexpr double kLearnS = 60.0;
 constexpr double kSteadyRad = 0.005;    // change of mount and slip on a straight
 constexpr double kAxleM = 2.0;          // antenna to rear axle: in a turn it goes sideways
-constexpr double kLargestNis = 25.0;    // one alone is no reason to doubt
 
 }  // namespace
 
@@ -42,8 +41,7 @@ bool CourseMonitor::push(const GnssFix& fix, const Ekf& filter) {
   previous_ = fix.time;
   offset_rad_ = wrap_pi(offset_rad_ + share * change_rad);
   offset_variance_rad2_ += share * (kSteadyRad * kSteadyRad - offset_variance_rad2_);
-  const double nis = std::min(change_rad * change_rad / variance_rad2, kLargestNis);
-  if (!cusum_.push(nis, 1)) return false;
+  if (!cusum_.push(change_rad * change_rad / variance_rad2, 1)) return false;
   offset_rad_ = 0.0;
   offset_variance_rad2_ = 1.0;
   return true;

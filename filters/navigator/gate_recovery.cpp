@@ -15,6 +15,8 @@ constexpr double kLowestOdds = 0.01;
 constexpr double kSigmas = 5.0;
 constexpr double kLongestMemoryS = 300.0;  // being right for longer proves no more
 constexpr double kLargestTurnRad = 1.8;    // of an attitude that is anywhere: pi / sqrt(3)
+constexpr double kLargestForceMps2 = 20.0;  // of a bias: gravity with the wrong sign
+constexpr double kLargestRateRadps = 0.5;   // ... a vehicle's own rate with the wrong sign
 
 /// Shrinks the variances of three errors to what they can be at all.
 void hold_below(ErrorMatrix& P, int block, double sigma) {
@@ -118,6 +120,8 @@ Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal
   edit(rival, [&](Belief& belief) {
     widen(belief, widening);
     hold_below(belief.P, kPsi, kLargestTurnRad);
+    hold_below(belief.P, kBa, kLargestForceMps2);
+    hold_below(belief.P, kBg, kLargestRateRadps);
     restart_motion(belief, r_e_m, fix.position->R_e_m2, v_e_mps,
                    fix.velocity ? fix.velocity->R_e_m2ps2 : unseen);
   });

@@ -73,7 +73,7 @@ void NavigatorState::watch_course(const GnssFix& fix) {
   if (!tells || !fix.velocity || last_update_.outcome != UpdateOutcome::Outcome::kFused) return;
   if (!course_.push(fix, bank_->best())) return;
   contradicted_ = fix.time;
-  is_course_wrong_ = true;
+  doubt_heading(bank_->best(), bank_->best());
 }
 
 bool NavigatorState::was_opened(Time now) const {

@@ -112,7 +112,6 @@ void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
   for (std::size_t k = 0; k < kMaxFilters; ++k) {
     if (outcomes[k].dof >= kFixDof) refused_[k] = outcomes[k].outcome == Outcome::kGated;
   }
-  if (collapsed()) return;
   const auto is_fused = [](const UpdateOutcome& r) { return r.outcome == Outcome::kFused; };
   const auto fused = std::find_if(outcomes.begin(), outcomes.end(), is_fused);
   if (fused == outcomes.end()) return;
@@ -120,6 +119,7 @@ void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
       last_evidence_[of_heading ? 0 : static_cast<std::size_t>(std::clamp(fused->dof, 1, 6))];
   const double since_s = last ? to_seconds(fused->time - *last) : kLongAgoS;
   last = fused->time;
+  if (collapsed()) return;
   // p^weight: what a measurement tells beyond the one before it, by gnss_position_weight().
   const double root = gnss_position_weight(since_s, kEvidenceCorrelationS);
   const double weight = root * root;

@@ -8,8 +8,8 @@
 namespace leeway {
 namespace {
 
-constexpr double kDoubtS = 60.0;  // twice as long as a receiver's errors last
-constexpr double kBrokenImuScale = 30.0;  // beyond, the IMU cannot be what it is said to be
+constexpr double kDoubtS = 120.0;  // what is wrong in turns shows again at the next or so
+constexpr double kBrokenImuScale = 5.0;  // beyond, the IMU cannot be what it is said to be
 
 }  // namespace
 

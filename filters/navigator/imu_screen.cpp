@@ -9,12 +9,19 @@ namespace leeway {
 bool ImuScreen::note(Axis& axis, double value, double dt_s) {
   // A rate times a step, divided by it again.
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
-  const bool is_same = std::abs(value - axis.value) <= kRounding * std::abs(value);
+  constexpr double kShare = 1.0 / 32.0;  // of the newest
+  const double change = value - axis.value;
+  const bool is_same = std::abs(change) <= kRounding * std::abs(value);
   axis.value = value;
   axis.held_s = is_same ? axis.held_s + dt_s : 0.0;
   axis.held = is_same ? std::min(axis.held + 1, kHeldIncrements) : 0;
-  if (!is_same) axis.changes = std::min(axis.changes + 1, kHeldIncrements);
-  return axis.changes == kHeldIncrements && axis.held == kHeldIncrements && axis.held_s >= kHeldS;
+  if (!is_same) {
+    axis.mean_change += kShare * (std::abs(change) - axis.mean_change);
+    axis.mean_bend += kShare * (std::abs(change - axis.change) - axis.mean_bend);
+    axis.change = change;
+  }
+  const bool has_noise = axis.mean_bend > axis.mean_change;
+  return has_noise && axis.held == kHeldIncrements && axis.held_s >= kHeldS;
 }
 
 bool ImuScreen::is_held(const ImuIncrement& inc) {

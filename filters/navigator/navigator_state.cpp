@@ -172,8 +172,8 @@ void NavigatorState::start_beside(const GnssFix& fix) {
   constexpr double kBrokenScale = 100.0;  // no other attitude would mend it
   const Ekf filter = bank_->best();
   const double scale = filter.inertial().noise_scale();
-  const bool is_imu_doubted = scale > kDoubtedScale && scale < kBrokenScale;
-  if (!bank_->collapsed() || !(is_imu_doubted || is_course_wrong_) || was_opened(fix.time)) {
+  if (!bank_->collapsed() || scale < kDoubtedScale || scale > kBrokenScale ||
+      was_opened(fix.time)) {
     is_starting_beside_ = false;
     return;
   }
@@ -184,11 +184,8 @@ void NavigatorState::start_beside(const GnssFix& fix) {
   bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
                       found->turn_sigma_rad);
   if (C_bs_) begin_vehicle();
-  // As likely as all of the others together, and the best until they explain the fixes better. One
-  // whose heading is not where the vehicle goes is unlikely.
-  constexpr double kWrongCourseOdds = 0.1;
-  bank_->add(filter, is_course_wrong_ ? kWrongCourseOdds : HeadingBank::kMaxHeadings);
-  is_course_wrong_ = false;
+  // As likely as all of the others together, and the best until they explain the fixes better.
+  bank_->add(filter, HeadingBank::kMaxHeadings);
   heading_doubted_ = fix.time;
   is_starting_beside_ = false;
 }

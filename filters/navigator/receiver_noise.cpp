@@ -74,7 +74,7 @@ void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen:
                          double nis, bool is_white) {
   note_claim(nis);
   is_surprising_ =
-      is_white ? cusum_.push(std::min(nis, kLargestNis), 3) : recent_nis_ratio_ > kLastingSurprise;
+      is_white ? cusum_.push(nis, 3) : recent_nis_ratio_ > kLastingSurprise;
   if (is_white) note_mean(R.llt().matrixL().solve(innovation), nis);
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;
@@ -85,7 +85,8 @@ void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen:
   const double largest = kLargestRatio * sigma_scale_ * sigma_scale_;
   const double ratio = change.dot(R.llt().solve(change)) / kExpected;
   // A filter that foretells little explains such changes itself.
-  surprises_ = ratio > largest && nis > kUnexplained ? surprises_ + 1 : 0;
+  const bool is_explained = shows_imu_ && nis < kUnexplained;
+  surprises_ = ratio > largest && !is_explained ? surprises_ + 1 : 0;
   if (surprises_ > kNoOutliers) {
     sigma_scale_ = std::min(2.0 * sigma_scale_, kLargestScale);
     change_ratio_ = sigma_scale_ * sigma_scale_;

@@ -15,8 +15,6 @@ namespace {
 constexpr double kOpenHeadingRightMps = 0.5;
 constexpr double kOpenHeadingRightM = 1.0;
 
-constexpr double kLargestNis = 25.0;  // one alone is no reason to doubt
-
 }  // namespace
 
 VehicleConfig VehicleConfig::car() { return of(VehicleKind::kCar); }
@@ -62,7 +60,7 @@ bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
     return false;
   }
   const double nis = roll(*block, bank);
-  return bank.collapsed() && cusum_.push(std::min(nis, kLargestNis), 1);
+  return bank.collapsed() && cusum_.push(nis, 1);
 }
 
 void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {

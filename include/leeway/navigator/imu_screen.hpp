@@ -10,8 +10,8 @@
 namespace leeway {
 
 /// Watches the six axes for a value that stays the same to the last bit: a sensor that is stuck, or
-/// at the end of its range. One that has never changed has no noise, and is a simulation. No heap,
-/// no exceptions. Source: docs/theory/navigator/screens.md.
+/// at the end of its range. One without noise is a simulation: its changes are smooth, and it may
+/// well stay the same. No heap, no exceptions.
 class ImuScreen {
  public:
   static constexpr double kHeldS = 0.25;        ///< and at least
@@ -24,15 +24,22 @@ class ImuScreen {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    for (Axis& axis : axes_) archive(axis.value, axis.held_s, axis.held, axis.changes);
+    for (Axis& axis : axes_) axis.visit(archive);
   }
 
  private:
   struct Axis {
     double value{0.0};
     double held_s{0.0};
-    int held{0};     // increments in a row
-    int changes{0};  // seen so far, up to kHeldIncrements
+    double change{0.0};       // the newest
+    double mean_change{0.0};  // of its size, over the last few
+    double mean_bend{0.0};    // ... and of the change of the change: of noise it is the larger
+    int held{0};              // increments in a row
+
+    template <class Archive>
+    void visit(Archive& archive) {
+      archive(value, held_s, change, mean_change, mean_bend, held);
+    }
   };
   static bool note(Axis& axis, double value, double dt_s);
 

@@ -64,7 +64,7 @@ class NavigatorState {
     archive(imu_screen_, hole_s_, screen_, aligner_, aiding_, course_, mount_, position_noise_,
             velocity_noise_, C_bs_, last_update_, last_fused_, gate_recovery_, incumbent_,
             heading_weight_, refused_headings_, heading_doubted_, contradicted_,
-            is_course_wrong_, is_starting_beside_, repairs_, resets_, realignments_);
+            is_starting_beside_, repairs_, resets_, realignments_);
     archive.optional(bank_, any_bank());
   }
 
@@ -107,8 +107,8 @@ class NavigatorState {
   VehicleAiding aiding_;
   CourseMonitor course_;
   MountEstimator mount_{};
-  ReceiverNoise position_noise_{1.0};  // its errors are those of the fix before
-  ReceiverNoise velocity_noise_{0.5};
+  ReceiverNoise position_noise_{1.0, false};  // its errors are those of the fix before
+  ReceiverNoise velocity_noise_{0.5, true};
   std::optional<Eigen::Matrix3d> C_bs_;
   std::optional<HeadingBank> bank_{};
   UpdateOutcome last_update_{};
@@ -119,7 +119,6 @@ class NavigatorState {
   RefusedHeadings refused_headings_{};
   std::optional<Time> heading_doubted_{};
   std::optional<Time> contradicted_{};  // the filter, by what it cannot explain
-  bool is_course_wrong_{false};
   bool is_starting_beside_{false};  // the aligner, anew
   std::uint32_t repairs_{0};
   std::uint32_t resets_{0};

@@ -9,7 +9,7 @@ namespace leeway {
 /// Source: Page (1954), Biometrika 41; Basseville and Nikiforov (1993), section 2.2.
 class NisCusum {
  public:
-  /// @param nis  normalized innovation squared, no larger than the gate's: one alone tells little
+  /// @param nis  normalized innovation squared; however large, one alone is no alarm
   /// @param dof  components of the measurement
   /// @returns whether the measurements so far are beyond chance; the test then begins anew
   bool push(double nis, int dof);

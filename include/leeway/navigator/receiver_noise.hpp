@@ -22,7 +22,9 @@ class ReceiverNoise {
 
   /// @param smallest  how far down a modest claim may be scaled, at most 1. Errors that are alike
   ///                  from fix to fix do not show here, and count.
-  explicit ReceiverNoise(double smallest) : smallest_(smallest) {}
+  /// @param shows_imu  whether the IMU's errors change the innovations from fix to fix, as those of
+  ///                   velocities
+  ReceiverNoise(double smallest, bool shows_imu) : smallest_(smallest), shows_imu_(shows_imu) {}
 
   double sigma_scale() const { return sigma_scale_; }
 
@@ -69,6 +71,7 @@ class ReceiverNoise {
   void note_mean(const Eigen::Vector3d& by_R, double nis);
 
   double smallest_;
+  bool shows_imu_;
   double sigma_scale_{1.0};
   double nis_ratio_{1.0};
   double recent_nis_ratio_{1.0};

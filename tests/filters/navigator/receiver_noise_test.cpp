@@ -34,7 +34,7 @@ struct Receiver {
     sim::Random random(seed);
     const Eigen::Matrix3d R = claimed();
     const Eigen::LLT<Eigen::Matrix3d> llt(R);
-    ReceiverNoise scale(smallest);
+    ReceiverNoise scale(smallest, false);
     for (int k = 0; k < fixes; ++k) {
       const Eigen::Vector3d z =
           Eigen::Matrix3d(llt.matrixL()) * (truth * random.normal3()) + offset;
@@ -52,7 +52,7 @@ struct Receiver {
 }  // namespace
 
 TEST_CASE("before any fix the claim stands") {
-  const ReceiverNoise scale(0.5);
+  const ReceiverNoise scale(0.5, false);
   CHECK(scale.sigma_scale() == 1.0);
   CHECK(scale.nis_ratio() == 1.0);
 }
