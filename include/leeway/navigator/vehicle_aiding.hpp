@@ -5,8 +5,8 @@
 #include "leeway/earth/fields.hpp"
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/navigator/heading_bank.hpp"
-#include "leeway/navigator/nis_cusum.hpp"
-#include "leeway/navigator/standstill.hpp"
+#include "leeway/monitors/nis_cusum.hpp"
+#include "leeway/monitors/standstill.hpp"
 #include "leeway/navigator/vehicle_kind.hpp"
 
 namespace leeway {

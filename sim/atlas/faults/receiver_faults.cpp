@@ -174,7 +174,9 @@ std::vector<Fault> of_velocity() {
 }  // namespace
 
 std::vector<Fault> receiver_faults() {
-  Fault cold = receiver("first 10 fixes in another town", 10.0, wrong_first_fixes());
+  Fault cold = unknowable(receiver("first 10 fixes in another town", 10.0, wrong_first_fixes()),
+                          "the first fixes of a start agree with each other, and nothing else is "
+                          "known of where it is");
   cold.from_start = true;
   std::vector<Fault> all{
       receiver("dead for 30 s", 30.0, silent_receiver()),

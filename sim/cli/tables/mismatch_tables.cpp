@@ -16,7 +16,7 @@ namespace {
 
 using sim::FaultError;
 
-constexpr std::string_view kHead = R"(# IMUs that the navigator does not know
+constexpr std::string_view kMismatchHead = R"(# IMUs that the navigator does not know
 
 Written by `leeway atlas --mismatch --write docs/guide/mismatch.md`. The default navigator, told
 nothing of its IMU, and the same with `VehicleConfig::car()`, on the car drive of
@@ -168,7 +168,7 @@ Json mismatch_json(const sim::MismatchCampaign& campaign) {
 }
 
 std::string mismatch_markdown(const sim::MismatchCampaign& campaign) {
-  std::string text = std::string(kHead) + summary_text(campaign);
+  std::string text = std::string(kMismatchHead) + summary_text(campaign);
   for (const sim::FixKind fixes : kAll<sim::FixKind>) text += matrix_markdown(campaign, fixes);
   return text;
 }

@@ -10,7 +10,7 @@
 namespace leeway {
 
 /// Looks at fixes before a filter does. No heap, no exceptions. Source:
-/// docs/theory/navigator/screens.md.
+/// docs/theory/monitors/screens.md.
 class FixScreen {
  public:
   enum class Finding : std::uint8_t {

@@ -1,4 +1,4 @@
-#include "leeway/navigator/fix_screen.hpp"
+#include "leeway/monitors/fix_screen.hpp"
 
 #include <doctest/doctest.h>
 

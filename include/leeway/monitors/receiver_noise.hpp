@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "leeway/earth/time.hpp"
-#include "leeway/navigator/nis_cusum.hpp"
+#include "leeway/monitors/nis_cusum.hpp"
 
 namespace leeway {
 
@@ -15,7 +15,7 @@ namespace leeway {
 /// innovations change from one fix to the next: that is its noise, while what they have in common
 /// is an error that lasts, the receiver's or the filter's. Up to 1000 when the receiver is
 /// over-confident; within a band around 1 the claim is left alone. Source:
-/// docs/theory/navigator/receiver_noise.md.
+/// docs/theory/monitors/receiver_noise.md.
 class ReceiverNoise {
  public:
   static constexpr int kWindow = 30;  ///< fixes

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "leeway/ekf/ekf.hpp"
-#include "leeway/navigator/nis_cusum.hpp"
+#include "leeway/monitors/nis_cusum.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 
 namespace leeway {

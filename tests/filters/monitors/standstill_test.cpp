@@ -1,4 +1,4 @@
-#include "leeway/navigator/standstill.hpp"
+#include "leeway/monitors/standstill.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "leeway/navigator/nis_cusum.hpp"
+#include "leeway/monitors/nis_cusum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "leeway/navigator/imu_screen.hpp"
+#include "leeway/monitors/imu_screen.hpp"
 
 #include <algorithm>
 #include <cmath>

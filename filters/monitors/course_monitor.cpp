@@ -1,4 +1,4 @@
-#include "leeway/navigator/course_monitor.hpp"
+#include "leeway/monitors/course_monitor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "leeway/navigator/receiver_noise.hpp"
+#include "leeway/monitors/receiver_noise.hpp"
 
 #include <doctest/doctest.h>
 
