@@ -6,7 +6,7 @@
 
 namespace leeway {
 
-bool ImuScreen::note(Axis& axis, double value, double dt_s) {
+bool ImuScreen::note(Axis& axis, double value, double dt_s, double least_noise) {
   // A rate times a step, divided by it again.
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
   constexpr double kShare = 1.0 / 32.0;  // of the newest
@@ -20,16 +20,19 @@ bool ImuScreen::note(Axis& axis, double value, double dt_s) {
     axis.mean_bend += kShare * (std::abs(change - axis.change) - axis.mean_bend);
     axis.change = change;
   }
-  const bool has_noise = axis.mean_bend > axis.mean_change;
+  const bool has_noise = axis.mean_change > least_noise && axis.mean_bend > axis.mean_change;
   return has_noise && axis.held == kHeldIncrements && axis.held_s >= kHeldS;
 }
 
 bool ImuScreen::is_held(const ImuIncrement& inc) {
+  // What a log without noise is rounded to is far below, a MEMS sensor's noise above.
+  constexpr double kLeastRadps = 1e-5;
+  constexpr double kLeastMps2 = 1e-4;
   bool held = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    const bool gyro = note(axes_[k], inc.dtheta_b_rad(i) / inc.dt_s, inc.dt_s);
-    const bool accelerometer = note(axes_[3 + k], inc.dv_b_mps(i) / inc.dt_s, inc.dt_s);
+    const bool gyro = note(axes_[k], inc.dtheta_b_rad(i) / inc.dt_s, inc.dt_s, kLeastRadps);
+    const bool accelerometer = note(axes_[3 + k], inc.dv_b_mps(i) / inc.dt_s, inc.dt_s, kLeastMps2);
     held = held || gyro || accelerometer;
   }
   return held;

@@ -11,7 +11,8 @@ namespace leeway {
 
 /// Watches the six axes for a value that stays the same to the last bit: a sensor that is stuck, or
 /// at the end of its range. One without noise is a simulation: its changes are smooth, and it may
-/// well stay the same. No heap, no exceptions.
+/// well stay the same. Its noise must be that of MEMS sensors, 1e-5 rad/s and 1e-4 m/s^2 at least:
+/// better ones that are stuck are not told. No heap, no exceptions.
 class ImuScreen {
  public:
   static constexpr double kHeldS = 0.25;        ///< and at least
@@ -41,7 +42,7 @@ class ImuScreen {
       archive(value, held_s, change, mean_change, mean_bend, held);
     }
   };
-  static bool note(Axis& axis, double value, double dt_s);
+  static bool note(Axis& axis, double value, double dt_s, double least_noise);
 
   std::array<Axis, 6> axes_{};  // rad/s and m/s^2
 };

@@ -251,6 +251,9 @@ void warn(const FuseJob& job) {
   if (const auto n = count(r, Verdict::kGated); n > 0) {
     spdlog::warn("{}{} fixes were refused by the gate", where, n);
   }
+  if (const auto n = count(r, Verdict::kPartly); n > 0) {
+    spdlog::warn("{}of {} fixes the gate refused the position or the velocity", where, n);
+  }
   if (!r.has_solution) spdlog::warn("{}no solution: {}", where, why_no_solution(r));
   constexpr double kUpsideDownDeg = 90.0;
   if (std::abs(r.final_roll_deg) > kUpsideDownDeg) {

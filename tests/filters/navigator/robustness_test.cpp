@@ -509,16 +509,20 @@ TEST_CASE("IMU that cannot be right" * doctest::test_suite("heavy")) {
         slips[k](inc);
         return true;
       };
-      drive.run(240.0);
       double square_m2 = 0.0;
-      for (double t_s = 241.0; t_s <= 300.0; t_s += 1.0) {
+      int told_s = 0;
+      for (double t_s = 1.0; t_s <= 300.0; t_s += 1.0) {
         drive.run(t_s);
+        told_s += drive.health().state != Health::State::kAligned;
+        if (t_s <= 240.0) continue;
         REQUIRE(drive.navigator.aligned());
         square_m2 += drive.error_m() * drive.error_m();
       }
       MESSAGE("slip " << k << ": " << std::sqrt(square_m2 / 60.0) << " m, realignments "
                       << drive.health().realignments);
-      CHECK(drive.health().state != Health::State::kAligned);
+      // A gyro that reads next to nothing looks like one with a bias on a long straight, or in a
+      // long bend: it is told at the change from one to the other, and for two minutes.
+      CHECK(told_s > 120);
       // Half a second after a fix: its own 5 m in three axes, and what an IMU without the right
       // gravity falls in that time, 1.2 m; with the wrong sign 2.5 m, and 44 m by the next fix where
       // one is refused, as is one in ten: 14 m.
