@@ -100,7 +100,7 @@ Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal
   const double scale = filter.inertial().noise_scale();
   const double widening =
       scale > 1.0 ? std::clamp(refusal.nis / refusal.gate, 2.0, kLargestWidening) : 1.0;
-  const auto& [nav, bias] = filter.estimate();
+  const NavState& nav = filter.estimate().nav;
   const Eigen::Vector3d& lever_b_m = filter.inertial().config().lever_arm_b_m;
   const Eigen::Vector3d r_e_m = fix.position->r_e_m - nav.q_eb * lever_b_m;
   Ekf rival = filter;

@@ -24,18 +24,19 @@ void RefusedHeadings::fused(Time t) {
 }
 
 bool RefusedHeadings::refused(Time t, double innovation_rad, double sigma_rad) {
-  constexpr double kSigmas = 5.0;
+  constexpr double kAgreeSigmas = 5.0;
   constexpr double kLeastS = 5.0;            // an outlier or two are none
-  constexpr double kLongestMemoryS = 300.0;  // having been right for longer proves no more
+  constexpr double kLongestGoodS = 300.0;  // having been right for longer proves no more
   const bool agrees =
-      refused_since_ && std::abs(wrap_pi(innovation_rad - innovation_rad_)) < kSigmas * sigma_rad;
+      refused_since_ &&
+      std::abs(wrap_pi(innovation_rad - innovation_rad_)) < kAgreeSigmas * sigma_rad;
   if (!agrees) {
     refused_since_ = t;
     innovation_rad_ = innovation_rad;
     return false;
   }
   const double good_s = good_since_ ? to_seconds(*good_until_ - *good_since_) : 0.0;
-  if (to_seconds(t - *refused_since_) < std::clamp(good_s, kLeastS, kLongestMemoryS)) return false;
+  if (to_seconds(t - *refused_since_) < std::clamp(good_s, kLeastS, kLongestGoodS)) return false;
   *this = RefusedHeadings{};
   return true;
 }

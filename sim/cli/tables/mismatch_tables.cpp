@@ -71,7 +71,7 @@ std::string word(const sim::MismatchCampaign& campaign, const sim::MismatchCell&
   return cell.ratio() > 1.0 ? "TOO SMALL" : "too large";
 }
 
-std::vector<std::string> row_of(const sim::MismatchCampaign& campaign,
+std::vector<std::string> mismatch_row_of(const sim::MismatchCampaign& campaign,
                                 const sim::MismatchCell& cell) {
   const sim::TrueImu& imu = campaign.imus[cell.imu];
   const sim::ClaimSums& before = cell.before_fixes;
@@ -147,7 +147,7 @@ void print_mismatch(const sim::MismatchCampaign& campaign) {
   Table table(kColumns);
   for (const sim::MismatchCell* cell : worst_first(campaign)) {
     const bool is_good = cell->lost.empty() && cell->claims_hold();
-    table.add(row_of(campaign, *cell), is_good ? Tone::kPlain : Tone::kBad);
+    table.add(mismatch_row_of(campaign, *cell), is_good ? Tone::kPlain : Tone::kBad);
   }
   table.print();
 }
