@@ -85,7 +85,9 @@ void NavigatorState::begin_vehicle() {
 void NavigatorState::integrate(const ImuIncrement& inc) {
   const ImuIncrement in_body = C_bs_ ? turned(inc, *C_bs_) : inc;
   if (!bank_) return aligner_.push(in_body);
-  if (imu_screen_.is_held(inc) && moves()) {
+  constexpr double kMemsRadPerSqrtS = 2e-5;  // 0.07 deg per root hour: less is no MEMS gyro
+  const bool is_mems = config_.filter.imu.gyro.noise_density > kMemsRadPerSqrtS;
+  if (is_mems && imu_screen_.is_held(inc) && moves()) {
     contradicted_ = inc.time;
     return bridge(inc.time);
   }

@@ -67,7 +67,7 @@ const sim::Trajectory& fast_circle() {
 }
 
 /// 100 Hz, fixes between samples, at up to 4 Hz.
-const test::Recording& recording() {
+const test::Recording& timeline_log() {
   static const test::Recording log =
       test::record(fast_circle(), sim::true_increments(fast_circle(), kTimelineRateHz, 200.0),
                    automotive_mems_model(), {}, 0.25, 0.4937, 1);
@@ -75,15 +75,15 @@ const test::Recording& recording() {
 }
 
 std::vector<GnssFix> fixes_until(double end_s) {
-  std::vector<GnssFix> fixes = recording().fixes;
+  std::vector<GnssFix> fixes = timeline_log().fixes;
   std::erase_if(fixes, [&](const GnssFix& f) { return to_seconds(f.time) > end_s; });
   return fixes;
 }
 
 std::vector<ImuIncrement> imu_until(double end_s) {
   return {
-      recording().imu.begin(),
-      recording().imu.begin() + static_cast<std::ptrdiff_t>(std::lround(end_s * kTimelineRateHz))};
+      timeline_log().imu.begin(),
+      timeline_log().imu.begin() + static_cast<std::ptrdiff_t>(std::lround(end_s * kTimelineRateHz))};
 }
 
 }  // namespace
@@ -227,7 +227,7 @@ TEST_CASE("half a second of latency at 30 m/s in a circle costs less than 1 %" *
   // 2026-11-24: fused at its arrival, a fix this late is 15 m off.
   const auto rms_m = [](double latency_s, std::uint64_t seed) {
     const auto log =
-        test::record(fast_circle(), recording().imu, ImuErrorModel{}, {}, 0.25, 0.5, seed);
+        test::record(fast_circle(), timeline_log().imu, ImuErrorModel{}, {}, 0.25, 0.5, seed);
     Navigator navigator{NavigatorConfig{}};
     start(navigator, fast_circle());
     auto arrivals = on_time(log.fixes);
@@ -258,7 +258,7 @@ TEST_CASE("velocity_lag_s: a receiver that reports the mean of its epoch") {
   // On the circle the mean over 0.25 s points where the antenna went 0.125 s ago: 0.0125 rad of
   // 30 m/s, 0.37 m/s across.
   const double epoch_s = 0.25;
-  test::Recording log = recording();
+  test::Recording log = timeline_log();
   for (GnssFix& fix : log.fixes) {
     const double t_s = to_seconds(fix.time);
     const auto r_e_m = [](double t) { return sim::truth_at(fast_circle(), t).nav.r_e_m; };
