@@ -83,7 +83,8 @@ std::vector<GnssFix> fixes_until(double end_s) {
 std::vector<ImuIncrement> imu_until(double end_s) {
   return {
       timeline_log().imu.begin(),
-      timeline_log().imu.begin() + static_cast<std::ptrdiff_t>(std::lround(end_s * kTimelineRateHz))};
+      timeline_log().imu.begin() +
+          static_cast<std::ptrdiff_t>(std::lround(end_s * kTimelineRateHz))};
 }
 
 }  // namespace
