@@ -7,8 +7,10 @@
 
 namespace leeway {
 
-Azimuth::Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Vector3d& r_e_m) {
-  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
+Azimuth::Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Vector3d& r_e_m)
+    : Azimuth(forward_e, ned_to_ecef(geodetic_from_ecef(r_e_m))) {}
+
+Azimuth::Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Matrix3d& C_en) {
   const double north = C_en.col(0).dot(forward_e);
   const double east = C_en.col(1).dot(forward_e);
   level_part = std::hypot(north, east);

@@ -5,6 +5,7 @@
 
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "leeway/model/heading.hpp"
 
 namespace leeway {
 namespace {
@@ -18,13 +19,12 @@ constexpr double kAxleM = 2.0;          // antenna to rear axle: in a turn it go
 
 bool CourseMonitor::push(const GnssFix& fix, const Ekf& filter) {
   const Estimate& estimate = filter.estimate();
-  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m)).transpose();
-  const Eigen::Vector3d v_n = C_ne * fix.velocity->v_e_mps;
-  const double speed_mps = v_n.head<2>().norm();
+  const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(estimate.nav.r_e_m));
+  const Azimuth course(fix.velocity->v_e_mps, C_en);
+  const double speed_mps = course.level_part;
   if (speed_mps < kLeastSpeedMps) return false;
-  const Eigen::Vector3d forward_n = C_ne * (estimate.nav.q_eb * Eigen::Vector3d::UnitX());
-  const double difference_rad =
-      wrap_pi(std::atan2(v_n.y(), v_n.x()) - std::atan2(forward_n.y(), forward_n.x()));
+  const Azimuth heading(estimate.nav.q_eb * Eigen::Vector3d::UnitX(), C_en);
+  const double difference_rad = wrap_pi(course.angle_rad - heading.angle_rad);
   const double turn_radps =
       (filter.inertial().mean_omega_ib_b_radps() - estimate.bias.b_g_radps).norm();
   const double course_rad =

@@ -73,8 +73,7 @@ void ReceiverNoise::note_mean(const Eigen::Vector3d& by_R, double nis) {
 void ReceiverNoise::note(Time t, const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                          double nis, bool is_white) {
   note_claim(nis);
-  is_surprising_ =
-      is_white ? cusum_.push(nis, 3) : recent_nis_ratio_ > kLastingSurprise;
+  is_surprising_ = is_white ? cusum_.push(nis, 3) : recent_nis_ratio_ > kLastingSurprise;
   if (is_white) note_mean(R.llt().matrixL().solve(innovation), nis);
   const bool in_a_row = previous_ && to_seconds(t - *previous_) <= kLongestIntervalS;
   const Eigen::Vector3d change = innovation - previous_innovation_;

@@ -173,10 +173,7 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   constexpr double kSteepestRatio = 4.0;
   const double dt_s = std::clamp(to_seconds(fix.time - last_fused_.value_or(fix.time)), 0.0, kUpS);
   // A slow error of the receiver's positions would be taken for the IMU's.
-  const double position_ratio =
-      is_white(fix)
-          ? position_noise_.recent_nis_ratio()
-          : 0.0;
+  const double position_ratio = is_white(fix) ? position_noise_.recent_nis_ratio() : 0.0;
   const double ratio = std::max(position_ratio, velocity_noise_.recent_nis_ratio());
   const double down_s = std::max(kShortestDownS, kDownS * ratio * ratio);
   const double up = std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);

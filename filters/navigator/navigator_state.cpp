@@ -172,8 +172,7 @@ bool NavigatorState::moves() const {
 void NavigatorState::start_beside(const GnssFix& fix) {
   constexpr double kDoubtedScale = 4.0;
   constexpr double kBrokenScale = 100.0;  // no other attitude would mend it
-  const Ekf filter = bank_->best();
-  const double scale = filter.inertial().noise_scale();
+  const double scale = bank_->best().inertial().noise_scale();
   if (!bank_->collapsed() || scale < kDoubtedScale || scale > kBrokenScale ||
       was_opened(fix.time)) {
     is_starting_beside_ = false;
@@ -183,6 +182,7 @@ void NavigatorState::start_beside(const GnssFix& fix) {
   is_starting_beside_ = true;
   const auto found = aligner_.push(fix);
   if (!found || !can_start(found->estimate, found->P)) return;
+  const Ekf filter = bank_->best();
   bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
                       found->turn_sigma_rad);
   if (C_bs_) begin_vehicle();
@@ -223,6 +223,5 @@ void NavigatorState::find_mount() {
   C_bs_ = C_bs;
   begin_vehicle();
 }
-
 
 }  // namespace leeway

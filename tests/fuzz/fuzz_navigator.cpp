@@ -100,9 +100,13 @@ class Drive {
     if (operation < 120) return push_increments(1 + operation % 64);
     if (operation < 140) return push_sample();
     if (operation < 200) return push_fix();
-    if (operation < 215) return count(navigator_.push(odometer()));
-    if (operation < 223) return count(navigator_.push(barometer()));
-    if (operation < 230) return count(navigator_.push(heading()));
+    if (operation < 215) return count(navigator_.push(reading<OdometerSpeed>(10.0, 1.0, 0.2, 0.1)));
+    if (operation < 223) {
+      return count(navigator_.push(reading<BarometricHeight>(100.0, 5.0, 1.0, 0.5)));
+    }
+    if (operation < 230) {
+      return count(navigator_.push(reading<MeasuredHeading>(0.0, 3.0, 0.05, 0.05)));
+    }
     if (operation < 238) return start();
     if (operation < 246) return restore();
     navigator_ = Navigator(navigator_);
@@ -175,28 +179,11 @@ class Drive {
     count(navigator_.push(fix));
   }
 
-  OdometerSpeed odometer() {
-    OdometerSpeed odometer;
-    odometer.time = some_time();
-    odometer.speed_mps = choices_.number(10.0, 1.0);
-    odometer.sigma_mps = choices_.number(0.2, 0.1);
-    return odometer;
-  }
-
-  BarometricHeight barometer() {
-    BarometricHeight barometer;
-    barometer.time = some_time();
-    barometer.height_m = choices_.number(100.0, 5.0);
-    barometer.sigma_m = choices_.number(1.0, 0.5);
-    return barometer;
-  }
-
-  MeasuredHeading heading() {
-    MeasuredHeading heading;
-    heading.time = some_time();
-    heading.heading_rad = choices_.number(0.0, 3.0);
-    heading.sigma_rad = choices_.number(0.05, 0.05);
-    return heading;
+  /// What an aiding sensor reads.
+  template <class R>
+  R reading(double value, double value_spread, double sigma, double sigma_spread) {
+    return R{some_time(), choices_.number(value, value_spread),
+             choices_.number(sigma, sigma_spread)};
   }
 
   void start() {

@@ -9,13 +9,15 @@
 
 namespace leeway {
 
-/// The direction over ground of a unit vector, clockwise from true north, and its change with the
+/// The direction over ground of a vector, clockwise from true north, and its change with the
 /// vector. What a change of place does to north is left out: tan(latitude) / 6370 km.
 struct Azimuth {
-  /// @param forward_e  unit vector, ECEF. @param r_e_m  the place, on the Earth
+  /// @param forward_e  ECEF: a unit vector, or a velocity. @param r_e_m  the place, on the Earth
   Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Vector3d& r_e_m);
+  /// @param C_en  ned_to_ecef() of the place
+  Azimuth(const Eigen::Vector3d& forward_e, const Eigen::Matrix3d& C_en);
 
-  /// Whether it can be told: within 10 deg of the vertical a small tilt changes it too much.
+  /// Whether it can be told of a unit vector: near the vertical, 10 deg, tilt changes it too much.
   bool is_defined() const { return level_part > 0.17; }
 
   double level_part;      ///< length of the vector's horizontal part

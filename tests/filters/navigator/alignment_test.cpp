@@ -11,6 +11,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/model/claimed_solution.hpp"
 #include "tests/filters/navigator/recording.hpp"
+#include "tests/support/local_trajectory.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temp_dir.hpp"
 
@@ -28,15 +29,6 @@ std::optional<Alignment> align(Aligner& aligner, const test::Recording& log) {
     if (auto result = aligner.push(log.fixes[next++])) return result;
   }
   return std::nullopt;
-}
-
-sim::Trajectory local_trajectory(std::function<sim::LocalMotion(double)> motion) {
-  sim::Trajectory trajectory;
-  trajectory.name = "local";
-  trajectory.plane = sim::TangentPlane(sim::kDefaultOrigin);
-  trajectory.duration_s = 20.0;
-  trajectory.motion = std::move(motion);
-  return trajectory;
 }
 
 sim::GnssErrorModel almost_perfect_gnss() {
@@ -99,14 +91,14 @@ TEST_CASE("aligned in a straight, in a turn, while braking and on a hill") {
     sim::Trajectory trajectory;
     double tolerance_rad;
   };
-  const sim::Trajectory braking = local_trajectory([](double t_s) {
+  const sim::Trajectory braking = test::local_trajectory(20.0, [](double t_s) {
     sim::LocalMotion m;
     const sim::Jet t = sim::time_jet(t_s);
     m.east_m = 25.0 * t - 1.5 * t * t;
     m.yaw_rad = 90.0 * kRadPerDeg;
     return m;
   });
-  const sim::Trajectory hill = local_trajectory([](double t_s) {
+  const sim::Trajectory hill = test::local_trajectory(20.0, [](double t_s) {
     sim::LocalMotion m;
     const sim::Jet t = sim::time_jet(t_s);
     m.north_m = -20.0 * std::cos(0.06) * t;

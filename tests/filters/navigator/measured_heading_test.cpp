@@ -17,6 +17,7 @@
 #include "tests/filters/navigator/car.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/filters/navigator/same_bits.hpp"
+#include "tests/support/local_trajectory.hpp"
 #include "tests/support/near.hpp"
 
 namespace leeway {
@@ -28,18 +29,9 @@ constexpr double kSigmaRad = 1.0 * kRadPerDeg;
 constexpr double kImuRateHz = 50.0;
 const Eigen::Vector3d kStill = Eigen::Vector3d::Zero();  // of what no heading depends on
 
-sim::Trajectory heading_trajectory(std::function<sim::LocalMotion(double)> motion) {
-  sim::Trajectory trajectory;
-  trajectory.name = "local";
-  trajectory.plane = sim::TangentPlane(sim::kDefaultOrigin);
-  trajectory.duration_s = 120.0;
-  trajectory.motion = std::move(motion);
-  return trajectory;
-}
-
 /// Holds its place to some decimetres, and turns its nose by 20 deg and back.
 const sim::Trajectory& hovering() {
-  static const sim::Trajectory trajectory = heading_trajectory([](double t_s) {
+  static const sim::Trajectory trajectory = test::local_trajectory(120.0, [](double t_s) {
     const sim::Jet t = sim::time_jet(t_s);
     sim::LocalMotion m;
     m.north_m = 0.2 * sin(0.3 * t);
@@ -53,7 +45,7 @@ const sim::Trajectory& hovering() {
 
 /// Goes east at 6 m/s with its bow 20 deg into the wind, from the left.
 const sim::Trajectory& crabbing() {
-  static const sim::Trajectory trajectory = heading_trajectory([](double t_s) {
+  static const sim::Trajectory trajectory = test::local_trajectory(120.0, [](double t_s) {
     const sim::Jet t = sim::time_jet(t_s);
     sim::LocalMotion m;
     m.east_m = 6.0 * t;
