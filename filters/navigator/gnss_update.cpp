@@ -39,6 +39,7 @@ Verdict NavigatorState::use(const GnssFix& fix) {
   if (heading_sigma_rad(bank_->best()) > kOpenRad) open_heading();
   const bool was_refused = gate_recovery_.is_row();
   if (!was_refused) incumbent_ = bank_->best_index();
+  const double fix_interval_s = to_seconds(fix.time - last_fused_.value_or(fix.time));
   bool is_explained = false;  // by any of the filters
   last_update_ = bank_->update([&](Ekf& filter) {
     const UpdateOutcome outcome = update(filter, fix);
@@ -63,7 +64,8 @@ Verdict NavigatorState::use(const GnssFix& fix) {
   });
   if (!C_bs_) find_mount();
   watch_course(fix);
-  start_beside(fix);
+  start_beside(fix, fix_interval_s);
+  watch_coasting();
   return verdict;
 }
 
@@ -74,6 +76,16 @@ void NavigatorState::watch_course(const GnssFix& fix) {
   if (!course_.push(fix, bank_->best())) return;
   contradicted_ = fix.time;
   doubt_heading(bank_->best(), bank_->best());
+}
+
+// At rest an IMU is quieter than on the road. One that is taken for noisier than it was shown to be
+// is in doubt just now.
+void NavigatorState::watch_coasting() {
+  constexpr double kInDoubt = 1.5;
+  const bool is_sound = bank_->collapsed() && !gate_recovery_.is_row() && !aiding_.at_rest() &&
+                        bank_->best().inertial().noise_scale() <
+                            kInDoubt * std::max(1.0, coast_.imu_sigma_scale());
+  is_sound ? coast_.compare(bank_->best()) : coast_.restart();
 }
 
 bool NavigatorState::was_opened(Time now) const {
@@ -177,11 +189,12 @@ void NavigatorState::learn_imu_noise(const GnssFix& fix) {
   const double ratio = std::max(position_ratio, velocity_noise_.recent_nis_ratio());
   const double down_s = std::max(kShortestDownS, kDownS * ratio * ratio);
   const double up = std::pow(std::min(ratio, kSteepestRatio), dt_s / kUpS);
+  const double shown = coast_.imu_sigma_scale();
   bank_->for_each([&](Ekf& filter) {
     double scale = filter.inertial().noise_scale();
     if (ratio > kBeyondChance && bank_->count() <= HeadingBank::kMaxRivals) scale *= up;
-    if (ratio < 1.0) scale = 1.0 + (scale - 1.0) * std::exp(-dt_s / down_s);
-    filter.scale_imu_noise(std::min(scale, kLargestImuScale));
+    if (ratio < 1.0) scale = shown + (scale - shown) * std::exp(-dt_s / down_s);
+    filter.scale_imu_noise(std::clamp(scale, shown, kLargestImuScale));
   });
 }
 

@@ -20,7 +20,8 @@ constexpr double kIgnoredSurprise = 2.0;     // a difference of nis + log_det_S 
 constexpr double kMemory = 10.0;             // independent measurements
 constexpr double kNegligibleVariance = 0.5;  // relative
 constexpr int kFixDof = 3;
-constexpr double kErrorEndsPerS = 0.1;  // of a receiver that is wrong
+constexpr double kErrorEndsPerS = 0.1;       // of a receiver whose position or velocity is wrong
+constexpr double kWholeErrorEndsPerS = 0.5;  // ... or both
 constexpr double kLongAgoS = 1e3;
 
 constexpr double kPi = 180.0 * kRadPerDeg;
@@ -136,12 +137,13 @@ void HeadingBank::weigh(const Outcomes& outcomes, bool of_heading) {
       drop(k);
       continue;
     }
-    if (are_rivals && k == *incumbent_ && refuses && refused_before[k]) {
-      log_weight_[k] -= kErrorEndsPerS * since_s;
+    const bool is_refusing = are_rivals && k == *incumbent_ && refused_before[k];
+    if (is_refusing && refuses) {
+      log_weight_[k] -= (r.fused_in_part ? kErrorEndsPerS : kWholeErrorEndsPerS) * since_s;
       surprise[k] = std::numeric_limits<double>::lowest();
       continue;
     }
-    log_weight_[k] *= 1.0 - weight / kMemory;
+    if (!is_refusing) log_weight_[k] *= 1.0 - weight / kMemory;
     if (broken) surprise[k] = 0.0;  // the last one stays, whatever it is
     least = std::min(least, surprise[k]);
   }

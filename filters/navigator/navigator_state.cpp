@@ -94,6 +94,7 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
   end_hole();
   if (is_starting_beside_) aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
+  coast_.push(in_body);
   const bool rested = aiding_.at_rest();
   if (aiding_.push(in_body, *bank_)) {
     contradicted_ = inc.time;
@@ -117,6 +118,7 @@ void NavigatorState::bridge(Time to) {
     aligner_ = aligner_of(config_);
     return;
   }
+  coast_.restart();
   const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
   bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, hole_s_); });
   hole_s_ += dt_s;
@@ -168,13 +170,14 @@ bool NavigatorState::moves() const {
 }
 
 // The IMU may be right again, or it was the attitude that was wrong: where the IMU is taken for a
-// far noisier one than it is, a second start is weighed against the filter.
-void NavigatorState::start_beside(const GnssFix& fix) {
+// far noisier one than it is, a second start is weighed against the filter. One from fixes far apart
+// is a guess: the tilt of some degrees that it leaves is 10 m after 5 s.
+void NavigatorState::start_beside(const GnssFix& fix, double fix_interval_s) {
   constexpr double kDoubtedScale = 4.0;
   constexpr double kBrokenScale = 100.0;  // no other attitude would mend it
   const double scale = bank_->best().inertial().noise_scale();
   if (!bank_->collapsed() || scale < kDoubtedScale || scale > kBrokenScale ||
-      was_opened(fix.time)) {
+      was_opened(fix.time) || fix_interval_s > config_.alignment.max_fix_interval_s) {
     is_starting_beside_ = false;
     return;
   }
@@ -210,6 +213,7 @@ void NavigatorState::realign() {
   ++realignments_;
   contradicted_ = bank_->best().estimate().nav.time;
   bank_.reset();
+  coast_ = CoastMonitor{};
   aligner_ = aligner_of(config_);
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
@@ -221,6 +225,7 @@ void NavigatorState::find_mount() {
   if (!C_bs) return;
   bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
+  coast_.restart();
   begin_vehicle();
 }
 

@@ -25,13 +25,16 @@ class CourseMonitor {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(offset_variance_rad2_, offset_rad_, previous_, cusum_);
+    archive(offset_variance_rad2_, offset_rad_, learned_heading_rad2_, previous_, cusum_);
   }
 
  private:
+  void learn(double change_rad, double course_rad2, double heading_rad2, double since_s);
+
   double drift_rad_;
   double offset_variance_rad2_;
-  double offset_rad_{0.0};  // course minus heading
+  double offset_rad_{0.0};            // course minus heading
+  double learned_heading_rad2_{0.0};  // of the heading's error that the offset has taken in
   std::optional<Time> previous_{};
   NisCusum cusum_{};
 };

@@ -9,6 +9,7 @@
 
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/alignment.hpp"
+#include "leeway/monitors/coast_monitor.hpp"
 #include "leeway/monitors/course_monitor.hpp"
 #include "leeway/monitors/fix_screen.hpp"
 #include "leeway/navigator/gate_recovery.hpp"
@@ -65,7 +66,9 @@ class NavigatorState {
             velocity_noise_, C_bs_, last_update_, last_fused_, gate_recovery_, incumbent_,
             heading_weight_, refused_headings_, heading_doubted_, contradicted_,
             is_starting_beside_, repairs_, resets_, realignments_);
-    archive.optional(bank_, any_bank());
+    const HeadingBank any = any_bank();
+    archive.optional(bank_, any);
+    coast_.visit(archive, any.best());
   }
 
  private:
@@ -88,10 +91,11 @@ class NavigatorState {
   void learn_noise(const GnssFix& fix);
   void challenge(const GnssFix& fix, double odds);
   void watch_course(const GnssFix& fix);
-  void start_beside(const GnssFix& fix);
+  void start_beside(const GnssFix& fix, double fix_interval_s);
   bool was_opened(Time now) const;
   bool doubt_heading(Ekf around, const Ekf& doubting);
   void learn_imu_noise(const GnssFix& fix);
+  void watch_coasting();
   bool moves() const;
   bool motion_hides_heading(Time t) const;
   void realign();
@@ -106,6 +110,7 @@ class NavigatorState {
   Aligner aligner_;
   VehicleAiding aiding_;
   CourseMonitor course_;
+  CoastMonitor coast_{};
   MountEstimator mount_{};
   ReceiverNoise position_noise_{1.0, false};  // its errors are those of the fix before
   ReceiverNoise velocity_noise_{0.5, true};

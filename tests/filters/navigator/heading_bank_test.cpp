@@ -233,7 +233,8 @@ struct Weights {
 
 /// Of three filters 1 km apart: one challenged, one beside it, and the rival. Both of the first
 /// refuse the fixes of 1 s and 2 s; the rival, of 1 s, explains the second.
-Weights after_two_refusals(double imu_scale, double interval_s) {
+/// @param in_part  whether they fuse the position or the velocity
+Weights after_two_refusals(double imu_scale, double interval_s, bool in_part = false) {
   constexpr double kApartM = 1e3;
   const ErrorMatrix P = diagonal_covariance();
   const auto filter_at = [&](double y_m, double z_m) {
@@ -241,7 +242,7 @@ Weights after_two_refusals(double imu_scale, double interval_s) {
     estimate.nav.r_e_m += Eigen::Vector3d(0.0, y_m, z_m);
     return Ekf(EkfConfig{}, estimate, P);
   };
-  const auto fix = [](double t_s, auto explains) {
+  const auto fix = [in_part](double t_s, auto explains) {
     return [=](const Ekf& filter) {
       const bool fuses = explains(filter.estimate().nav.r_e_m);
       UpdateOutcome outcome;
@@ -250,6 +251,7 @@ Weights after_two_refusals(double imu_scale, double interval_s) {
       outcome.gate = 40.0;
       outcome.nis = fuses ? 6.0 : 500.0;
       outcome.outcome = fuses ? Outcome::kFused : Outcome::kGated;
+      outcome.fused_in_part = !fuses && in_part;
       return outcome;
     };
   };
@@ -271,7 +273,7 @@ Weights after_two_refusals(double imu_scale, double interval_s) {
 
 }  // namespace
 
-TEST_CASE("an incumbent that goes on to refuse loses 0.1 nats per second, any other at once") {
+TEST_CASE("an incumbent that goes on to refuse loses 0.5 nats per second, in part 0.1, any other at once") {
   constexpr double kIntervalS = 2.0;
   const double b = std::tanh(0.5 * kIntervalS / 2.0);
   // Two fifths, two fifths and one fifth; a tenth of what is known goes, but for the incumbent.
@@ -281,9 +283,9 @@ TEST_CASE("an incumbent that goes on to refuse loses 0.1 nats per second, any ot
   const double rival = std::pow(0.2, kept);
   // Rounding, magnified by distances of 1 km in coordinates of 6400 km: 1e-9 m / 1e3 m.
   constexpr double kTolerance = 1e-11;
-  {
-    const Weights seen = after_two_refusals(1.0, kIntervalS);
-    const double incumbent = 0.4 * std::exp(-0.1 * kIntervalS);
+  for (const bool in_part : {false, true}) {
+    const Weights seen = after_two_refusals(1.0, kIntervalS, in_part);
+    const double incumbent = 0.4 * std::exp((in_part ? -0.1 : -0.5) * kIntervalS);
     const double sum = incumbent + other + rival;
     CHECK(near(seen.incumbent, incumbent / sum, kTolerance));
     CHECK(near(seen.other, other / sum, kTolerance));

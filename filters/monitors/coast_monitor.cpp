@@ -1,0 +1,81 @@
+#include "leeway/monitors/coast_monitor.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "leeway/earth/earth.hpp"
+
+namespace leeway {
+namespace {
+
+constexpr double kStepS = 0.1;         // the copy needs no finer ones: a vehicle moves little in it
+constexpr double kShortestS = 10.0;    // or as long as it takes to drift by more than fixes err
+constexpr double kLongestS = 60.0;
+constexpr double kTellingRatio = 4.0;  // of the copy's variance to the filter's
+constexpr double kLargestNis = 20.0;   // one comparison alone shall not decide
+constexpr double kMostDof = 60.0;      // 30 comparisons: five minutes and more
+constexpr double kLeastScale = 0.3;
+constexpr double kLargestScale = 30.0;
+constexpr int kDof = 2;
+
+}  // namespace
+
+void CoastMonitor::push(const ImuIncrement& inc) {
+  if (!copy_) return;
+  time_ = inc.time;
+  dt_s_ += inc.dt_s;
+  dtheta_b_rad_ += inc.dtheta_b_rad;
+  dv_b_mps_ += inc.dv_b_mps;
+  if (dt_s_ + 0.5 * inc.dt_s > kStepS) catch_up();
+}
+
+void CoastMonitor::catch_up() {
+  if (dt_s_ == 0.0) return;
+  copy_->predict({.time = time_, .dt_s = dt_s_, .dtheta_b_rad = dtheta_b_rad_, .dv_b_mps = dv_b_mps_});
+  dt_s_ = 0.0;
+  dtheta_b_rad_.setZero();
+  dv_b_mps_.setZero();
+}
+
+void CoastMonitor::compare(const Ekf& filter) {
+  const NavState& nav = filter.estimate().nav;
+  if (copy_) {
+    const double coasted_s = to_seconds(nav.time - start_);
+    if (coasted_s < kShortestS) return;
+    catch_up();
+    const Eigen::Matrix<double, 3, 2> C_eh =
+        ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).leftCols<2>();
+    const auto horizontal = [&](const Ekf& f) -> Eigen::Matrix2d {
+      return C_eh.transpose() * f.covariance().block<3, 3>(kDv, kDv) * C_eh;
+    };
+    const Eigen::Matrix2d of_copy = horizontal(*copy_);
+    const Eigen::Matrix2d of_filter = horizontal(filter);
+    if (of_copy.trace() < kTellingRatio * of_filter.trace()) {
+      if (coasted_s < kLongestS) return;
+    } else {
+      // Two estimates of which the one has seen all that the other has differ by the difference of
+      // their covariances. Half of it, so that it stays positive where both know as little.
+      const Eigen::Matrix2d S = of_copy - 0.5 * of_filter;
+      const Eigen::Vector2d difference_mps =
+          C_eh.transpose() * (copy_->estimate().nav.v_e_mps - nav.v_e_mps);
+      learn(difference_mps.dot(S.inverse() * difference_mps), copy_->inertial().noise_scale());
+    }
+  }
+  copy_ = filter;
+  start_ = time_ = nav.time;
+  dt_s_ = 0.0;
+  dtheta_b_rad_.setZero();
+  dv_b_mps_.setZero();
+}
+
+void CoastMonitor::learn(double nis, double scale_of_copy) {
+  if (!std::isfinite(nis)) return;
+  const double relative = scale_of_copy / imu_sigma_scale_;
+  const double sum = std::min(nis, kLargestNis) * relative * relative;
+  imu_sigma_scale_ *= std::sqrt((known_dof_ + sum) / (known_dof_ + kDof));
+  imu_sigma_scale_ = std::clamp(imu_sigma_scale_, kLeastScale, kLargestScale);
+  known_dof_ = std::min(known_dof_ + kDof, kMostDof);
+}
+
+}  // namespace leeway
