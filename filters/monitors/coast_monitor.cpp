@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/earth/rotation.hpp"
 
 namespace leeway {
 namespace {
@@ -18,6 +19,21 @@ constexpr double kMostDof = 60.0;      // 30 comparisons: five minutes and more
 constexpr double kLeastScale = 0.3;
 constexpr double kLargestScale = 30.0;
 constexpr int kDof = 2;
+constexpr double kBeyondChance = 19.5;  // 1e-5, one degree of freedom
+constexpr double kLeastTurnRad = 1.0 * kRadPerDeg;  // 1 sigma of what linearization leaves
+
+/// Whether measurements have turned the filter's heading by more than either claims. Two estimates
+/// of which the one has seen all that the other has differ by the difference of their covariances.
+bool turned_beyond_claim(const Ekf& copy, const Ekf& filter) {
+  const NavState& nav = filter.estimate().nav;
+  const Eigen::Vector3d turn_e_rad =
+      log_quaternion(nav.q_eb * copy.estimate().nav.q_eb.conjugate());
+  const double turn_rad = nav.r_e_m.normalized().dot(turn_e_rad);
+  const double gained_rad2 =
+      std::pow(heading_sigma_rad(copy), 2) - std::pow(heading_sigma_rad(filter), 2);
+  return turn_rad * turn_rad >
+         kBeyondChance * (std::max(gained_rad2, 0.0) + kLeastTurnRad * kLeastTurnRad);
+}
 
 }  // namespace
 
@@ -38,35 +54,42 @@ void CoastMonitor::catch_up() {
   dv_b_mps_.setZero();
 }
 
-void CoastMonitor::compare(const Ekf& filter) {
+bool CoastMonitor::compare(const Ekf& filter) {
   const NavState& nav = filter.estimate().nav;
   if (copy_) {
-    const double coasted_s = to_seconds(nav.time - start_);
-    if (coasted_s < kShortestS) return;
     catch_up();
-    const Eigen::Matrix<double, 3, 2> C_eh =
-        ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).leftCols<2>();
-    const auto horizontal = [&](const Ekf& f) -> Eigen::Matrix2d {
-      return C_eh.transpose() * f.covariance().block<3, 3>(kDv, kDv) * C_eh;
-    };
-    const Eigen::Matrix2d of_copy = horizontal(*copy_);
-    const Eigen::Matrix2d of_filter = horizontal(filter);
-    if (of_copy.trace() < kTellingRatio * of_filter.trace()) {
-      if (coasted_s < kLongestS) return;
-    } else {
-      // Two estimates of which the one has seen all that the other has differ by the difference of
-      // their covariances. Half of it, so that it stays positive where both know as little.
-      const Eigen::Matrix2d S = of_copy - 0.5 * of_filter;
-      const Eigen::Vector2d difference_mps =
-          C_eh.transpose() * (copy_->estimate().nav.v_e_mps - nav.v_e_mps);
-      learn(difference_mps.dot(S.inverse() * difference_mps), copy_->inertial().noise_scale());
+    if (turned_beyond_claim(*copy_, filter)) {
+      restart();
+      return true;
     }
+    const double coasted_s = to_seconds(nav.time - start_);
+    if (coasted_s < kShortestS) return false;
+    if (!compare_velocity(filter) && coasted_s < kLongestS) return false;
   }
   copy_ = filter;
   start_ = time_ = nav.time;
   dt_s_ = 0.0;
   dtheta_b_rad_.setZero();
   dv_b_mps_.setZero();
+  return false;
+}
+
+bool CoastMonitor::compare_velocity(const Ekf& filter) {
+  const NavState& nav = filter.estimate().nav;
+  const Eigen::Matrix<double, 3, 2> C_eh =
+      ned_to_ecef(geodetic_from_ecef(nav.r_e_m)).leftCols<2>();
+  const auto horizontal = [&](const Ekf& f) -> Eigen::Matrix2d {
+    return C_eh.transpose() * f.covariance().block<3, 3>(kDv, kDv) * C_eh;
+  };
+  const Eigen::Matrix2d of_copy = horizontal(*copy_);
+  const Eigen::Matrix2d of_filter = horizontal(filter);
+  if (of_copy.trace() < kTellingRatio * of_filter.trace()) return false;
+  // Half of the filter's, so that it stays positive where both know as little.
+  const Eigen::Matrix2d S = of_copy - 0.5 * of_filter;
+  const Eigen::Vector2d difference_mps =
+      C_eh.transpose() * (copy_->estimate().nav.v_e_mps - nav.v_e_mps);
+  learn(difference_mps.dot(S.inverse() * difference_mps), copy_->inertial().noise_scale());
+  return true;
 }
 
 void CoastMonitor::learn(double nis, double scale_of_copy) {

@@ -85,7 +85,10 @@ void NavigatorState::watch_coasting() {
   const bool is_sound = bank_->collapsed() && !gate_recovery_.is_row() && !aiding_.at_rest() &&
                         bank_->best().inertial().noise_scale() <
                             kInDoubt * std::max(1.0, coast_.imu_sigma_scale());
-  is_sound ? coast_.compare(bank_->best()) : coast_.restart();
+  if (!is_sound) return coast_.restart();
+  if (!coast_.compare(bank_->best())) return;
+  contradicted_ = bank_->best().estimate().nav.time;
+  doubt_heading(bank_->best(), bank_->best());
 }
 
 bool NavigatorState::was_opened(Time now) const {

@@ -23,7 +23,8 @@ class CoastMonitor {
 
   /// At a fix: takes note once the copy has coasted for long enough, and copies anew.
   /// @param filter  at the time of the newest increment, with the fix in it
-  void compare(const Ekf& filter);
+  /// @returns whether measurements have turned its heading by more than it claims: it is wrong
+  bool compare(const Ekf& filter);
 
   /// Forgets the copy: what it was compared with is no longer the same filter.
   void restart() { copy_.reset(); }
@@ -37,6 +38,7 @@ class CoastMonitor {
   }
 
  private:
+  bool compare_velocity(const Ekf& filter);
   void learn(double nis, double scale_of_copy);
   void catch_up();
 
