@@ -48,7 +48,8 @@ void CoastMonitor::push(const ImuIncrement& inc) {
 
 void CoastMonitor::catch_up() {
   if (dt_s_ == 0.0) return;
-  copy_->predict({.time = time_, .dt_s = dt_s_, .dtheta_b_rad = dtheta_b_rad_, .dv_b_mps = dv_b_mps_});
+  copy_->predict(
+      {.time = time_, .dt_s = dt_s_, .dtheta_b_rad = dtheta_b_rad_, .dv_b_mps = dv_b_mps_});
   dt_s_ = 0.0;
   dtheta_b_rad_.setZero();
   dv_b_mps_.setZero();

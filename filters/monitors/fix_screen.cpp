@@ -24,7 +24,9 @@ void raise(Eigen::Matrix3d& R, double least, double& floor) {
   constexpr double kDecline = 2.0;      // one bad claim does not spoil the good ones after it
   const double claimed = std::sqrt(std::max(0.0, R.diagonal().minCoeff()));
   const double believed = std::max({claimed, least, floor});
-  if (believed > claimed) R += (believed * believed - claimed * claimed) * Eigen::Matrix3d::Identity();
+  if (believed > claimed) {
+    R += (believed * believed - claimed * claimed) * Eigen::Matrix3d::Identity();
+  }
   const double highest = floor > 0.0 ? kDecline * kImprovement * floor : believed;
   floor = std::min(believed, highest) / kImprovement;
 }

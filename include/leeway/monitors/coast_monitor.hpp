@@ -11,8 +11,8 @@ namespace leeway {
 
 /// Carries a copy of the filter on without any measurement, and compares its velocity with that of
 /// the filter some ten seconds later. Fixes that come every second hide what the IMU drifts by in
-/// between; this shows it. Learns a factor on the deviations of the IMU's noise, 0.3 to 30. No heap,
-/// no exceptions. Source: docs/theory/monitors/coast_monitor.md.
+/// between; this shows it. Learns a factor on the deviations of the IMU's noise, 0.3 to 30. No
+/// heap, no exceptions. Source: docs/theory/monitors/coast_monitor.md.
 class CoastMonitor {
  public:
   /// By what the model's deviations are to be multiplied; 1 before anything is known.
