@@ -10,17 +10,17 @@
 namespace leeway {
 namespace {
 
-constexpr double kStepS = 0.1;         // the copy needs no finer ones: a vehicle moves little in it
-constexpr double kShortestS = 10.0;    // or as long as it takes to drift by more than fixes err
-constexpr double kLongestS = 60.0;
-constexpr double kTellingRatio = 4.0;  // of the copy's variance to the filter's
-constexpr double kLargestNis = 20.0;   // one comparison alone shall not decide
-constexpr double kMostDof = 60.0;      // 30 comparisons: five minutes and more
-constexpr double kLeastScale = 0.3;
-constexpr double kLargestScale = 30.0;
-constexpr int kDof = 2;
-constexpr double kBeyondChance = 19.5;  // 1e-5, one degree of freedom
-constexpr double kLeastTurnRad = 1.0 * kRadPerDeg;  // 1 sigma of what linearization leaves
+constexpr double kCopyStepS = 0.1;        // a vehicle moves smoothly in it
+constexpr double kShortestCoastS = 10.0;  // or as long as it takes to drift by more than fixes err
+constexpr double kLongestCoastS = 60.0;
+constexpr double kTellingRatio = 4.0;      // of the copy's variance to the filter's
+constexpr double kLargestCoastNis = 20.0;  // one comparison alone shall not decide
+constexpr double kMostDof = 60.0;          // 30 comparisons: five minutes and more
+constexpr double kLeastImuFactor = 0.3;
+constexpr double kLargestImuFactor = 30.0;
+constexpr int kVelocityDof = 2;
+constexpr double kLargestTurnRatio = 19.5;           // 1e-5, one degree of freedom
+constexpr double kLinearTurnRad = 1.0 * kRadPerDeg;  // 1 sigma of what linearization leaves
 
 /// Whether measurements have turned the filter's heading by more than either claims. Two estimates
 /// of which the one has seen all that the other has differ by the difference of their covariances.
@@ -32,7 +32,7 @@ bool turned_beyond_claim(const Ekf& copy, const Ekf& filter) {
   const double gained_rad2 =
       std::pow(heading_sigma_rad(copy), 2) - std::pow(heading_sigma_rad(filter), 2);
   return turn_rad * turn_rad >
-         kBeyondChance * (std::max(gained_rad2, 0.0) + kLeastTurnRad * kLeastTurnRad);
+         kLargestTurnRatio * (std::max(gained_rad2, 0.0) + kLinearTurnRad * kLinearTurnRad);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void CoastMonitor::push(const ImuIncrement& inc) {
   dt_s_ += inc.dt_s;
   dtheta_b_rad_ += inc.dtheta_b_rad;
   dv_b_mps_ += inc.dv_b_mps;
-  if (dt_s_ + 0.5 * inc.dt_s > kStepS) catch_up();
+  if (dt_s_ + 0.5 * inc.dt_s > kCopyStepS) catch_up();
 }
 
 void CoastMonitor::catch_up() {
@@ -64,8 +64,8 @@ bool CoastMonitor::compare(const Ekf& filter) {
       return true;
     }
     const double coasted_s = to_seconds(nav.time - start_);
-    if (coasted_s < kShortestS) return false;
-    if (!compare_velocity(filter) && coasted_s < kLongestS) return false;
+    if (coasted_s < kShortestCoastS) return false;
+    if (!compare_velocity(filter) && coasted_s < kLongestCoastS) return false;
   }
   copy_ = filter;
   start_ = time_ = nav.time;
@@ -96,10 +96,10 @@ bool CoastMonitor::compare_velocity(const Ekf& filter) {
 void CoastMonitor::learn(double nis, double scale_of_copy) {
   if (!std::isfinite(nis)) return;
   const double relative = scale_of_copy / imu_sigma_scale_;
-  const double sum = std::min(nis, kLargestNis) * relative * relative;
-  imu_sigma_scale_ *= std::sqrt((known_dof_ + sum) / (known_dof_ + kDof));
-  imu_sigma_scale_ = std::clamp(imu_sigma_scale_, kLeastScale, kLargestScale);
-  known_dof_ = std::min(known_dof_ + kDof, kMostDof);
+  const double sum = std::min(nis, kLargestCoastNis) * relative * relative;
+  imu_sigma_scale_ *= std::sqrt((known_dof_ + sum) / (known_dof_ + kVelocityDof));
+  imu_sigma_scale_ = std::clamp(imu_sigma_scale_, kLeastImuFactor, kLargestImuFactor);
+  known_dof_ = std::min(known_dof_ + kVelocityDof, kMostDof);
 }
 
 }  // namespace leeway
