@@ -65,8 +65,8 @@ void make_positive_definite(ErrorMatrix& P) {
   const Eigen::SelfAdjointEigenSolver<ErrorMatrix> eigen(
       ErrorMatrix(inverse.asDiagonal() * P * inverse.asDiagonal()));
   const ErrorVector raised = eigen.eigenvalues().cwiseMax(kFloor);
-  const ErrorMatrix correlation =
-      eigen.eigenvectors() * raised.asDiagonal() * eigen.eigenvectors().transpose();
+  const ErrorMatrix columns = eigen.eigenvectors() * raised.asDiagonal();
+  const ErrorMatrix correlation = columns.lazyProduct(eigen.eigenvectors().transpose());
   P = sigma.asDiagonal() * correlation * sigma.asDiagonal();
   P = (0.5 * (P + P.transpose())).eval();
 }

@@ -169,8 +169,12 @@ std::optional<Alignment> Aligner::take_position(const GnssFix& fix) {
   const double bend_mps = (dv_e_mps.norm() / over_s + kUnseenMps2) * 0.5 * base_s;
   const double sigma_mps = std::hypot(std::sqrt(2.0) * sigma_m / base_s, bend_mps);
   whole.velocity = {v_e_mps, sigma_mps * sigma_mps * Eigen::Matrix3d::Identity()};
-  const Push push{dv_e_mps, felt_mps, over_s, since_first_.q_start_end,
-                  std::sqrt(6.0) * sigma_m / std::min(base_s, first_base_s), turn_rad};
+  const Push push{dv_e_mps,
+                  felt_mps,
+                  over_s,
+                  since_first_.q_start_end,
+                  std::sqrt(6.0) * sigma_m / std::min(base_s, first_base_s),
+                  turn_rad};
   const auto result = align_by(push, whole);
   first_ = fix;
   middle_.reset();
@@ -182,15 +186,15 @@ std::optional<Alignment> Aligner::align_by(const Push& push, const GnssFix& fix)
   const Eigen::Vector3d f_e_mps =
       push.dv_e_mps - push.over_s * gravity_e(GravityModel::kNormal, fix.position->r_e_m);
   InitialSigma sigma = sigma_of(fix);
-  sigma.tilt_rad = std::hypot(
-      std::hypot(config_.tilt_floor_rad,
-                 filter_.imu.accelerometer.bias_sigma / kStandardGravityMps2),
-      push.sigma_mps / (push.over_s * kStandardGravityMps2),
-      std::min(filter_.imu.gyro.bias_sigma * push.over_s, kLargestTiltRad));
+  sigma.tilt_rad =
+      std::hypot(std::hypot(config_.tilt_floor_rad,
+                            filter_.imu.accelerometer.bias_sigma / kStandardGravityMps2),
+                 push.sigma_mps / (push.over_s * kStandardGravityMps2),
+                 std::min(filter_.imu.gyro.bias_sigma * push.over_s, kLargestTiltRad));
   sigma.heading_rad = sigma.tilt_rad;
   if (sigma.tilt_rad > 2.0 * kLargestTiltRad) return std::nullopt;
 
-  const Eigen::Quaterniond q_e_start = Eigen::Quaterniond::FromTwoVectors(push.felt_mps, f_e_mps);
+  const Eigen::Quaterniond q_e_start = rotation_between(push.felt_mps, f_e_mps);
   Eigen::Quaterniond q_eb = q_e_start * push.q_start_end;
   const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(fix.position->r_e_m));
   const Eigen::Vector3d v_n = C_en.transpose() * fix.velocity->v_e_mps;
@@ -199,8 +203,8 @@ std::optional<Alignment> Aligner::align_by(const Push& push, const GnssFix& fix)
   if (config_.heading_from_course && votes_ == 0 && speed_mps >= config_.min_speed_mps) {
     // The course is the mean one of the last interval: half a turn ago.
     const Eigen::Vector3d forward_n = C_en.transpose() * (q_eb * Eigen::Vector3d::UnitX());
-    const double yaw_rad = wrap_pi(std::atan2(v_n.y(), v_n.x()) -
-                                   std::atan2(forward_n.y(), forward_n.x()));
+    const double yaw_rad =
+        wrap_pi(std::atan2(v_n.y(), v_n.x()) - std::atan2(forward_n.y(), forward_n.x()));
     q_eb = exp_quaternion(yaw_rad * C_en.col(2)) * q_eb;
     turn_sigma_rad = std::hypot(config_.sideslip_rad,
                                 std::hypot(sigma.velocity_mps / speed_mps, 0.5 * push.turn_rad));
@@ -262,7 +266,7 @@ Alignment Aligner::level_only(const GnssFix& fix, const GnssVelocity& before, bo
   const Eigen::Vector3d a_e = at_rest ? Eigen::Vector3d::Zero() : Eigen::Vector3d(turn_e / dt_s);
   const Eigen::Vector3d f_e = a_e - gravity_e(GravityModel::kNormal, fix.position->r_e_m);
 
-  Alignment result = start_at(fix, Eigen::Quaterniond::FromTwoVectors(f_b, f_e));
+  Alignment result = start_at(fix, rotation_between(f_b, f_e));
   Eigen::Quaterniond& q_eb = result.estimate.nav.q_eb;
   // The measured force is the mean of the interval, the attitude wanted that of its end.
   const Eigen::Vector3d half_turn_b = 0.5 * since_fix_.dtheta_b_rad;

@@ -98,6 +98,25 @@ Eigen::Quaterniond turned(const Eigen::Vector3d& left_a_rad, const Eigen::Quater
   return q;
 }
 
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  // Eigen's FromTwoVectors does the same, with a singular value decomposition for opposite ones
+  // that takes ten seconds to compile.
+  constexpr double kOpposite = -1.0 + 1e-12;
+  const Eigen::Vector3d a = from.normalized();
+  const Eigen::Vector3d b = to.normalized();
+  const double c = a.dot(b);
+  Eigen::Quaterniond q;
+  if (c < kOpposite) {
+    q.w() = std::sqrt(0.5 * (1.0 + std::max(c, -1.0)));
+    q.vec() = std::sqrt(1.0 - q.w() * q.w()) * a.unitOrthogonal();
+  } else {
+    const double s = std::sqrt((1.0 + c) * 2.0);
+    q.vec() = a.cross(b) * (1.0 / s);
+    q.w() = 0.5 * s;
+  }
+  return q;
+}
+
 Eigen::Matrix3d rotation_from_euler(const EulerAngles& rpy) {
   return (Eigen::AngleAxisd(rpy.yaw_rad, Eigen::Vector3d::UnitZ()) *
           Eigen::AngleAxisd(rpy.pitch_rad, Eigen::Vector3d::UnitY()) *

@@ -244,7 +244,8 @@ class ParameterSources {
   /// @param second_moment  E[p p^T] of the parameters that belong to the source
   ErrorMoment<kFilters> covariance(
       const Eigen::Matrix<double, kSensorParameters, kSensorParameters>& second_moment) const {
-    return S_ * second_moment * S_.transpose();
+    const Sensitivity half = S_.lazyProduct(second_moment);
+    return half.lazyProduct(S_.transpose());
   }
 
  private:

@@ -46,15 +46,17 @@ std::vector<AtlasCell> LinearResponse::compared(
     const ErrorMatrix& Phi) const {
   const double truth = size(true_moment());
   const ErrorMatrix start = start_moment();
+  const ErrorMatrix half_way = Phi.lazyProduct(start);
+  const ErrorMatrix end = half_way.lazyProduct(Phi.transpose());
   std::vector<AtlasCell> cells;
   for (const AtlasColumn& column : claiming(columns)) {
     const auto filter = column.make(EkfConfig{.imu = {}}, {start_, start});
     for (const ImuIncrement& inc : imu_) filter->predict(inc);
-    cells.push_back({column.group, column.name, condition,
-                     factor_between(size(*filter->covariance()), truth)});
+    cells.push_back(
+        {column.group, column.name, condition, factor_between(size(*filter->covariance()), truth)});
   }
-  cells.push_back({AtlasGroup::kNotOffered, not_offered, condition,
-                   factor_between(size(Phi * start * Phi.transpose()), truth)});
+  cells.push_back(
+      {AtlasGroup::kNotOffered, not_offered, condition, factor_between(size(end), truth)});
   return cells;
 }
 

@@ -60,7 +60,7 @@ typename Errors::PlainObject times(const Transition& Phi, const Eigen::MatrixBas
   using Scalar = typename Errors::Scalar;
   const auto& x = X.derived().eval();  // X itself unless it is an expression
   const auto product = [&x](const Transition::Rows& rows) {
-    return rows.template leftCols<kErrorStates>().template cast<Scalar>() * x;
+    return rows.template leftCols<kErrorStates>().template cast<Scalar>().lazyProduct(x);
   };
   typename Errors::PlainObject y;
   y.template middleRows<3>(kPsi) = product(Phi.psi);

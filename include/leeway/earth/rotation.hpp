@@ -42,6 +42,10 @@ Eigen::Vector3d left_jacobian_times(const Eigen::Vector3d& phi_rad, const Eigen:
 Eigen::Quaterniond turned(const Eigen::Vector3d& left_a_rad, const Eigen::Quaterniond& q_ab,
                           const Eigen::Vector3d& right_b_rad);
 
+/// Quaternion of the shortest rotation that takes the direction of `from` to that of `to`. Where
+/// they are opposite it is half a turn about some axis across. @pre neither is zero.
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 /// Roll, pitch, yaw (rad) of C_nb = Rz(yaw) Ry(pitch) Rx(roll). For input and output only.
 struct EulerAngles {
   double roll_rad{};

@@ -57,9 +57,12 @@ double pulled_unchecked_m(const AtlasColumn& column, const EkfConfig& believed,
   replay(*filter, before);
   const Measurement m = gnss_measurement(trial.fixes.back().fix, filter->estimate(),
                                          Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
-  const ErrorMatrix P = *filter->covariance();
-  const MeasurementMatrix S = m.H * P * m.H.transpose() + m.R;
-  const ErrorVector x = P * m.H.transpose() * S.inverse() * m.innovation;
+  const Eigen::Matrix<double, 3, kErrorStates> H = m.H;  // the fix has no velocity
+  const Eigen::Matrix<double, kErrorStates, 3> PHt =
+      filter->covariance()->lazyProduct(H.transpose());
+  const Eigen::Matrix3d S = H.lazyProduct(PHt) + m.R;
+  const Eigen::Vector3d whole = S.inverse() * m.innovation;
+  const ErrorVector x = PHt * whole;
   return x.segment<3>(kDr).norm();
 }
 

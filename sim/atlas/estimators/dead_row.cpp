@@ -1,7 +1,8 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "filters/covariance/cholesky.hpp"
+#include "leeway/covariance/covariance_kernel.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
@@ -59,8 +60,12 @@ double factor_without_row(const TrialStart& start, int row) {
   Measurement m = gnss_measurement(whole_fix(start, {}), start.estimate, Eigen::Vector3d::Zero(),
                                    Eigen::Vector3d::Zero());
   m.H.row(row).setZero();
-  const ErrorMatrix information = start.P.inverse() + m.H.transpose() * m.R.inverse() * m.H;
-  return worst_factor(information.inverse());
+  const auto white_H = Cholesky<kMaxRows>(m.R).whitened(m.H);
+  ErrorMatrix information = white_H.transpose().lazyProduct(white_H);
+  information.diagonal() += start.P.diagonal().cwiseInverse();  // of a P that is diagonal
+  const ErrorMatrix root =
+      Cholesky<kErrorStates>(information).whitened(ErrorMatrix(ErrorMatrix::Identity()));
+  return worst_factor(root.transpose().lazyProduct(root));
 }
 
 std::vector<AtlasCell> run_dead_row(const AtlasOptions& /*options*/) {
@@ -72,13 +77,16 @@ std::vector<AtlasCell> run_dead_row(const AtlasOptions& /*options*/) {
     const auto filter = column.make(EkfConfig{.imu = {}, .gnss_correlation_s = 0.0}, start);
     filter->predict(inc);
     filter->update(whole_fix(start, inc.time));
-    cells.push_back({column.group, column.name, {}, worst_factor(*filter->covariance()),
+    cells.push_back({column.group,
+                     column.name,
+                     {},
+                     worst_factor(*filter->covariance()),
                      joined(filter->reported())});
   }
-  cells.push_back({AtlasGroup::kNotOffered, "a position row unused", {},
-                   factor_without_row(start, 0)});
-  cells.push_back({AtlasGroup::kNotOffered, "a velocity row unused", {},
-                   factor_without_row(start, 5)});
+  cells.push_back(
+      {AtlasGroup::kNotOffered, "a position row unused", {}, factor_without_row(start, 0)});
+  cells.push_back(
+      {AtlasGroup::kNotOffered, "a velocity row unused", {}, factor_without_row(start, 5)});
   return cells;
 }
 

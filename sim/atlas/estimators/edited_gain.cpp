@@ -11,28 +11,28 @@ namespace {
 
 /// A kernel whose gain leaves attitude and gyro bias alone: what is done to keep a filter from
 /// learning what it cannot know.
-template <UpdateForm form>
 class EditedGainKernel {
  public:
   using Number = double;
 
-  explicit EditedGainKernel(const ErrorMatrix& P) : P_(P) {}
+  explicit EditedGainKernel(const ErrorMatrix& P, UpdateForm form = UpdateForm::kJoseph)
+      : P_(P), form_(form) {}
   ErrorMatrix matrix() const { return P_; }
   void propagate(const Transition& Phi, const ProcessNoise& noise) {
     leeway::propagate(P_, Phi, noise);
   }
 
   double update(ErrorVector& x_hat, const ErrorVector& h, double z) {
-    const double variance = h.dot(P_ * h) + 1.0;
-    ErrorVector K = P_ * h / variance;
+    const ErrorVector Ph = P_.lazyProduct(h);
+    const double variance = h.dot(Ph) + 1.0;
+    ErrorVector K = Ph / variance;
     K.segment<3>(kPsi).setZero();
     K.segment<3>(kBg).setZero();
     x_hat += (z - h.dot(x_hat)) * K;
     const ErrorMatrix left = ErrorMatrix::Identity() - K * h.transpose();
-    if constexpr (form == UpdateForm::kJoseph) {
-      P_ = (left * P_ * left.transpose()).eval() + K * K.transpose();
-    } else {
-      P_ = (left * P_).eval();
+    P_ = left.lazyProduct(P_).eval();
+    if (form_ == UpdateForm::kJoseph) {
+      P_ = P_.lazyProduct(left.transpose()).eval() + K * K.transpose();
     }
     P_ = (0.5 * (P_ + P_.transpose())).eval();
     return variance;
@@ -44,30 +44,29 @@ class EditedGainKernel {
 
  private:
   ErrorMatrix P_;
+  UpdateForm form_;
 };
 
-template <UpdateForm form>
-AtlasColumn edited_column(const std::string& name) {
-  return {AtlasGroup::kNotOffered, name, [](const EkfConfig& config, const TrialStart& start) {
+AtlasColumn edited_column(const std::string& name, UpdateForm form) {
+  return {AtlasGroup::kNotOffered, name, [form](const EkfConfig& config, const TrialStart& start) {
             EkfConfig ungated = config;
             ungated.gate_probability = 0.0;
-            using Kernel = EditedGainKernel<form>;
-            return std::make_unique<WatchedEkf<Kernel, AdditiveError>>(
-                BasicEkf(ungated, start.estimate, Kernel(start.P)));
+            return std::make_unique<WatchedEkf<EditedGainKernel, AdditiveError>>(
+                BasicEkf(ungated, start.estimate, EditedGainKernel(start.P, form)));
           }};
 }
 
 std::vector<AtlasCell> run_edited_gain(const AtlasOptions& options) {
-  const Scene scene = drive_scene(
-      circle({.duration_s = 120.0}), 20.0,
-      {.tilt_rad = 1e-3, .heading_rad = 5e-3, .velocity_mps = 0.1, .position_m = 2.5},
-      imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
+  const Scene scene =
+      drive_scene(circle({.duration_s = 120.0}), 20.0,
+                  {.tilt_rad = 1e-3, .heading_rad = 5e-3, .velocity_mps = 0.1, .position_m = 2.5},
+                  imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
   std::vector<AtlasColumn> columns = claiming(few_atlas_columns());
   // What the library offers for it: a Schmidt update.
   columns.push_back(
       ekf_column(AtlasGroup::kEkf, "Ekf with heading held", {.held = Held::kHeadingAndTurn}));
-  columns.push_back(edited_column<UpdateForm::kJoseph>("edited gain in Joseph's form"));
-  columns.push_back(edited_column<UpdateForm::kSimple>("edited gain in the short form"));
+  columns.push_back(edited_column("edited gain in Joseph's form", UpdateForm::kJoseph));
+  columns.push_back(edited_column("edited gain in the short form", UpdateForm::kSimple));
   return scored(columns, scene.filter, recorded_trials(scene, options.brief ? 4 : 20), {},
                 score_after(60.0, &ErrorSums::sigma_ratio));
 }

@@ -31,7 +31,7 @@ ErrorMatrix frozen_phi(const Estimate& start, double interval_s) {
   const ErrorMatrix F = system_matrix(C_eb, C_eb * begin.f_ib_b_mps2,
                                       gravity_gradient_e(start.nav.r_e_m), kNever, kNever);
   ErrorMatrix Phi = ErrorMatrix::Identity() + std::ldexp(interval_s, -kDoublings) * F;
-  for (int k = 0; k < kDoublings; ++k) Phi = (Phi * Phi).eval();
+  for (int k = 0; k < kDoublings; ++k) Phi = Phi.lazyProduct(Phi).eval();
   return Phi;
 }
 

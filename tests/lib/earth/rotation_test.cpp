@@ -192,6 +192,24 @@ TEST_CASE("a million turned steps leave the random walk of their roundings") {
   CHECK(near(q.norm(), 1.0, 4.5e-16));
 }
 
+TEST_CASE("rotation_between turns one direction into another by the angle between them") {
+  for (const Eigen::Vector3d& from : kAxes) {
+    for (const double angle : kAngles) {
+      const Eigen::Vector3d across = from.unitOrthogonal();
+      const Eigen::Vector3d to = exp_rotation(angle * across) * from;
+      const Eigen::Quaterniond q = rotation_between(3.0 * from, 0.5 * to);
+      CAPTURE(angle);
+      CHECK(near(q.norm(), 1.0, 1e-15));
+      CHECK(near(q * from, to, 2e-6));  // half a turn is one from 1.4e-6 rad of it on
+      if (angle < 3.0) {
+        CHECK(near(q * from, to, 1e-15));
+        CHECK(near(log_quaternion(q), angle * across, 1e-14));
+      }
+    }
+    CHECK(near(rotation_between(from, -from) * from, -from, 1e-15));
+  }
+}
+
 TEST_CASE("Euler angles mean yaw, then pitch, then roll of a forward-right-down body") {
   // Groves (2.22), transposed, element by element.
   const double r = 0.3;
