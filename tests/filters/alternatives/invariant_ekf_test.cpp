@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
-#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
 #include "leeway/covariance/symmetric_kernel.hpp"
@@ -23,6 +22,7 @@
 #include "tests/filters/covariance/carried.hpp"
 #include "tests/filters/model/random_state.hpp"
 #include "tests/filters/navigator/recording.hpp"
+#include "tests/support/dense_algebra.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/numbers.hpp"
 
@@ -59,7 +59,7 @@ Estimate moved(const Estimate& estimate, const ErrorVector& xi_b) {
   algebra.topLeftCorner<3, 3>() = skew(xi_b.segment<3>(kPsi));
   algebra.block<3, 1>(0, 3) = xi_b.segment<3>(kDv);
   algebra.block<3, 1>(0, 4) = xi_b.segment<3>(kDr);
-  chi = (chi * algebra.exp()).eval();
+  chi = (chi * test::exp_of(algebra)).eval();
   Estimate result = estimate;
   const Eigen::Vector3d dr_e = chi.block<3, 1>(0, 4);
   result.nav.q_eb = Eigen::Quaterniond(Eigen::Matrix3d(chi.topLeftCorner<3, 3>()));
@@ -191,7 +191,7 @@ TEST_CASE("without a bias error the invariant error obeys its Phi however large 
   const ErrorMatrix Phi_b = numeric_group_transition(start, increments);
   Estimate end = start;
   test::carry(end, increments, test::kInf, test::kInf);
-  const ErrorMatrix Phi = body_axes(end).inverse() * Phi_b * body_axes(start);
+  const ErrorMatrix Phi = test::inverse_of(body_axes(end)) * Phi_b * body_axes(start);
   double worst = 0.0;
   double least_additive_m = test::kInf;
   for (const double angle_rad : {0.5, 1.0, 2.0, 3.0}) {
@@ -224,7 +224,7 @@ TEST_CASE("Phi in body axes is that of the increments, whatever attitude and spe
     Estimate end = from;
     test::carry(end, increments, test::kInf, test::kInf);
     return body_axes(end) * dense(test::accumulated(from.nav, increments)) *
-           body_axes(from).inverse();
+           test::inverse_of(body_axes(from));
   };
   SUBCASE("against central differences through the strapdown: second order in the increment") {
     const ErrorMatrix numeric =
@@ -268,7 +268,8 @@ TEST_CASE("H in body axes knows the increment and the lever arm alone") {
     rows.bottomLeftCorner<3, 3>() = C_be * Omega_ie;
     const GnssFix fix = fix_at(u.start, ErrorVector::Zero(), u, 1.0);
     const Measurement m = gnss_measurement(fix, u.start, lever_b_m, omega_m_radps);
-    const Eigen::Matrix<double, 6, kErrorStates> H_b = rows * m.H * body_axes(u.start).inverse();
+    const Eigen::Matrix<double, 6, kErrorStates> H_b =
+        rows * m.H * test::inverse_of(body_axes(u.start));
 
     Eigen::Matrix<double, 6, kErrorStates> expected =
         Eigen::Matrix<double, 6, kErrorStates>::Zero();
@@ -306,11 +307,12 @@ TEST_CASE("a whole fix against the textbook's filter in body axes") {
     const GnssFix fix = fix_at(before, x, u, 0.5);
     const Measurement m =
         gnss_measurement(fix, before, u.config.lever_arm_b_m, u.inc.dtheta_b_rad / u.inc.dt_s);
-    const Eigen::Matrix<double, 6, kErrorStates> H = m.H * to_body.inverse();
-    const Eigen::Matrix<double, 6, 6> S = H * P_b * H.transpose() + m.R;
-    const Eigen::Matrix<double, kErrorStates, 6> K = P_b * H.transpose() * S.inverse();
-    const Estimate expected = moved(before, K * m.innovation);
-    const ErrorMatrix P_expected = P_b - K * H * P_b;
+    const Eigen::MatrixXd H = m.H * test::inverse_of(to_body);
+    const test::DenseUpdate dense =
+        test::dense_update(P_b.cast<long double>(), H.cast<long double>(), m.R.cast<long double>(),
+                           m.innovation.cast<long double>());
+    const Estimate expected = moved(before, dense.x);
+    const ErrorMatrix P_expected = dense.P;
 
     filter.update(fix);
     const ErrorMatrix T = body_axes(filter.estimate());

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/ekf/ekf.hpp"
@@ -17,6 +16,7 @@
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "tests/filters/covariance/kernel_cases.hpp"
 #include "tests/filters/model/random_state.hpp"
+#include "tests/support/dense_algebra.hpp"
 #include "tests/support/near.hpp"
 
 namespace leeway {
@@ -78,7 +78,7 @@ Discrete van_loan(const Scene& s, double t_s) {
   M.topLeftCorner<kErrorStates, kErrorStates>() = -s.F * t_s;
   M.topRightCorner<kErrorStates, kErrorStates>() = noise_density(s.noise) * t_s;
   M.bottomRightCorner<kErrorStates, kErrorStates>() = s.F.transpose() * t_s;
-  const Pair E = M.exp();
+  const Pair E = test::exp_of(M);
   const ErrorMatrix Phi = E.bottomRightCorner<kErrorStates, kErrorStates>().transpose();
   return {Phi, Phi * E.topRightCorner<kErrorStates, kErrorStates>()};
 }

@@ -3,12 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
 
+#include "leeway/covariance/covariance.hpp"
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/chi_square.hpp"
@@ -18,6 +18,7 @@
 #include "leeway/sensors/imu_class.hpp"
 #include "tests/filters/model/random_state.hpp"
 #include "tests/filters/navigator/recording.hpp"
+#include "tests/support/dense_algebra.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temp_dir.hpp"
 
@@ -26,6 +27,7 @@ namespace {
 
 using test::at_equator;
 using test::near;
+using test::Wide;
 using Outcome = UpdateOutcome::Outcome;
 
 /// Errorless sensors, white fixes: closed forms apply.
@@ -63,6 +65,8 @@ Eigen::Matrix3d random_covariance3(sim::Random& random, double sigma) {
   return A * A.transpose() + 0.01 * sigma * sigma * Eigen::Matrix3d::Identity();
 }
 
+Wide wide(const Eigen::MatrixXd& m) { return m.cast<long double>(); }
+
 }  // namespace
 
 TEST_CASE("a position fix in closed form: variances 4 and 1 share 5 m as 4 to 1") {
@@ -79,7 +83,6 @@ TEST_CASE("a position fix in closed form: variances 4 and 1 share 5 m as 4 to 1"
 }
 
 TEST_CASE("a whole fix against the dense Kalman update in long double, and the reset") {
-  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     sim::Random random(seed, 8);
@@ -109,22 +112,18 @@ TEST_CASE("a whole fix against the dense Kalman update in long double, and the r
     fix.velocity = GnssVelocity{antenna_velocity_e(elsewhere, config.lever_arm_b_m, omega_b_radps),
                                 random_covariance3(random, 0.1)};
     const Measurement m = gnss_measurement(fix, before, config.lever_arm_b_m, omega_b_radps);
-    const Wide H = m.H.cast<long double>();
-    const Wide P_wide = P_before.cast<long double>();
-    const Wide S = H * P_wide * H.transpose() + m.R.cast<long double>();
-    const Wide K = P_wide * H.transpose() * Wide(S.inverse());
-    const Wide z = m.innovation.cast<long double>();
-    const ErrorVector x_hat = (K * z).cast<double>();
-    ErrorMatrix G = ErrorMatrix::Identity();
-    G.topLeftCorner<3, 3>() = reset_jacobian(x_hat);
-    const ErrorMatrix P_after = G * (P_wide - K * H * P_wide).cast<double>() * G.transpose();
+    const test::DenseUpdate dense =
+        test::dense_update(wide(P_before), wide(m.H), wide(m.R), wide(m.innovation));
+    const ErrorVector x_hat = dense.x;
+    ErrorMatrix P_after = dense.P;
+    transform_block(P_after, kPsi, reset_jacobian(x_hat));
     Estimate after = before;
     inject(after, x_hat);
 
     const UpdateOutcome outcome = ekf.update(fix);
     REQUIRE(outcome.outcome == Outcome::kFused);
     CHECK(outcome.covariance_positive);
-    CHECK(near(outcome.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
+    CHECK(near(outcome.nis / dense.nis, 1.0, 1e-9));
     // Six rows of a prior up to 50 times wider than the fix.
     CHECK(test::scaled_distance(ekf.covariance(), P_after) < 1e-9);
     const ErrorVector off = difference(ekf.estimate(), after).cwiseQuotient(sigmas);
@@ -134,7 +133,6 @@ TEST_CASE("a whole fix against the dense Kalman update in long double, and the r
 }
 
 TEST_CASE("with the vehicle's parameters: the dense Kalman update of all twenty, in long double") {
-  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     sim::Random random(seed, 8);
@@ -165,23 +163,21 @@ TEST_CASE("with the vehicle's parameters: the dense Kalman update of all twenty,
     m.R = B * B.transpose() + 0.1 * Eigen::MatrixXd::Identity(m.rows(), m.rows());
 
     Wide H(m.rows(), kJointStates);
-    H << m.H.cast<long double>(), m.H_vehicle.cast<long double>();
-    const Wide P_wide = P.cast<long double>();
-    const Wide S = H * P_wide * H.transpose() + Wide(m.R.cast<long double>());
-    const Wide K = P_wide * H.transpose() * Wide(S.inverse());
-    const Wide z = m.innovation.cast<long double>();
-    const JointVector x_hat = (K * z).cast<double>();
-    JointMatrix G = JointMatrix::Identity();
-    G.topLeftCorner<3, 3>() = reset_jacobian(x_hat.head<kErrorStates>());
-    const JointMatrix P_after = G * (P_wide - K * H * P_wide).cast<double>() * G.transpose();
+    H << wide(m.H), wide(m.H_vehicle);
+    const test::DenseUpdate dense = test::dense_update(wide(P), H, wide(m.R), wide(m.innovation));
+    const JointVector x_hat = dense.x;
+    const Eigen::Matrix3d J = reset_jacobian(x_hat.head<kErrorStates>());
+    JointMatrix P_after = dense.P;
+    P_after.topRows<3>() = (J * P_after.topRows<3>()).eval();
+    P_after.leftCols<3>() = (P_after.leftCols<3>() * J.transpose()).eval();
     Estimate after = before;
     inject(after, x_hat.head<kErrorStates>());
 
     const UpdateOutcome outcome = ekf.update(m);
     REQUIRE(outcome.outcome == Outcome::kFused);
     CHECK(outcome.dof == m.rows());
-    CHECK(near(outcome.nis / static_cast<double>((z.transpose() * S.inverse() * z)(0)), 1.0, 1e-9));
-    CHECK(near(outcome.log_det_S, std::log(static_cast<double>(S.determinant())), 1e-9));
+    CHECK(near(outcome.nis / dense.nis, 1.0, 1e-9));
+    CHECK(near(outcome.log_det_S, std::log(dense.det_S), 1e-9));
     JointMatrix P_joint;
     P_joint << ekf.covariance(), ekf.vehicle()->cross, ekf.vehicle()->cross.transpose(),
         ekf.vehicle()->P;
@@ -349,12 +345,12 @@ TEST_CASE("repair_covariance makes an indefinite P positive definite, and says s
     const ErrorVector sigmas = test::jacobian_steps(0.01, 0.1, 1.0, 0.05, 0.001);
     ErrorMatrix A;
     for (double& a : A.reshaped()) a = random.normal();
-    Eigen::SelfAdjointEigenSolver<ErrorMatrix> eigen(ErrorMatrix(A * A.transpose()));
-    ErrorVector values = eigen.eigenvalues();
+    const test::Spectrum spectrum = test::spectrum_of(A * A.transpose());
+    const ErrorMatrix vectors = spectrum.vectors;
+    ErrorVector values = spectrum.values;
     values(0) = -1e-6;
     values(1) = 0.0;
-    const ErrorMatrix whole =
-        eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+    const ErrorMatrix whole = vectors * values.asDiagonal() * vectors.transpose();
     ErrorMatrix P = sigmas.asDiagonal() * whole * sigmas.asDiagonal();
     P = (0.5 * (P + P.transpose())).eval();
     REQUIRE(P.diagonal().minCoeff() > 0.0);
