@@ -9,7 +9,7 @@ namespace leeway {
 namespace {
 
 constexpr double kMaxTimeS = 9e9;  // a signed 64-bit count of nanoseconds ends at 9.2e9 s
-constexpr std::int64_t kNsPerS = 1'000'000'000;
+constexpr std::int64_t kCountPerS = 1'000'000'000;
 constexpr int kMaxWholeDigits = 10;
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -85,7 +85,7 @@ std::optional<LineDamage> parse_time_as_double(const char*& p, const char* end, 
 
 // Digits after the decimal point, rounded to nanoseconds.
 const char* parse_fraction(const char* p, const char* end, std::int64_t& ns) {
-  std::int64_t unit = kNsPerS;
+  std::int64_t unit = kCountPerS;
   while (p != end && is_digit(*p) && unit > 1) {
     unit /= 10;
     ns += unit * (*p++ - '0');
@@ -110,7 +110,7 @@ std::optional<LineDamage> parse_time(const char*& first, const char* last, Time&
   const bool plain = p != digits && (p == last || !(is_digit(*p) || *p == 'e' || *p == 'E'));
   if (!plain) return parse_time_as_double(first, last, time);
   if (whole_s >= static_cast<std::int64_t>(kMaxTimeS)) return LineDamage::kOutOfRange;
-  ns += whole_s * kNsPerS;
+  ns += whole_s * kCountPerS;
   time = Time{Duration{negative ? -ns : ns}};
   first = p;
   return std::nullopt;

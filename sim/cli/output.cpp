@@ -97,10 +97,10 @@ Progress::~Progress() {
 
 void Progress::show(double fraction, std::optional<double> remaining_s) {
   constexpr int kWidth = 40;
-  constexpr auto kInterval = std::chrono::milliseconds{100};
+  constexpr auto kRedraw = std::chrono::milliseconds{100};
   const auto now = Clock::now();
   if (!is_terminal_ || now < next_) return;
-  next_ = now + kInterval;
+  next_ = now + kRedraw;
   drawn_ = true;
   const double done = std::clamp(fraction, 0.0, 1.0);
   const std::string bar(static_cast<std::size_t>(std::lround(done * kWidth)), '=');

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDefaultDurationS = 3600.0;
 constexpr double kFullTurnRad = 2.0 * std::numbers::pi;
 constexpr double kMostLateralMps2 = 100.0;
-constexpr std::size_t kMostWaypoints = 2000;
+constexpr std::size_t kMostPoints = 2000;
 
 constexpr Quantity kLatitude{
     "latitude", {&units::kDeg}, between(-90.0 * kRadPerDeg, 90.0 * kRadPerDeg)};
@@ -146,7 +146,7 @@ Trajectory read_waypoints(TomlSection& section, std::optional<double> duration_s
   set(section, kLateral, p.lateral_acceleration_mps2);
   p.turn_radius_m = section.number(kTurnRadius);
   section.tables("waypoint", [&](TomlSection& waypoint) {
-    if (p.waypoints.size() == kMostWaypoints) waypoint.fail("more than 2000 waypoints");
+    if (p.waypoints.size() == kMostPoints) waypoint.fail("more than 2000 waypoints");
     const Waypoint* before = p.waypoints.empty() ? nullptr : &p.waypoints.back();
     p.waypoints.push_back(read_waypoint(waypoint, origin, before));
   });

@@ -75,7 +75,7 @@ Json outages_json(const std::vector<FuseJob>& jobs) {
   Json outages = Json::array();
   for (const FuseJob& job : jobs) {
     for (const sim::OutageResult& outage : job.result.outages) {
-      outages.push_back(row_json(row_of(job, outage)));
+      outages.push_back(row_json(outage_row(job, outage)));
       if (!job.drive.empty()) outages.back()["drive"] = job.drive;
     }
   }
@@ -85,7 +85,7 @@ Json outages_json(const std::vector<FuseJob>& jobs) {
 Json summary_json(const std::vector<sim::OutageResult>& outages) {
   Json summary = Json::array();
   for (const sim::OutageSummary& s : sim::summarize(outages)) {
-    summary.push_back(row_json(row_of(s)));
+    summary.push_back(row_json(outage_row(s)));
   }
   return summary;
 }

@@ -117,16 +117,16 @@ void print_outage_summary(const std::vector<sim::OutageResult>& outages) {
              : gnss            ? "the withheld fixes"
                                : "the reference");
   const std::vector<sim::OutageSummary> summaries = sim::summarize(outages);
-  Table table = table_of(row_of(summaries.front()));
-  for (const sim::OutageSummary& s : summaries) add_row(table, row_of(s));
+  Table table = table_of(outage_row(summaries.front()));
+  for (const sim::OutageSummary& s : summaries) add_row(table, outage_row(s));
   table.print();
 }
 
 void print_outages(const std::vector<FuseJob>& jobs) {
   fmt::print("\nOutages one by one\n");
-  Table table = table_of(row_of({}, sim::OutageResult{}));
+  Table table = table_of(outage_row({}, sim::OutageResult{}));
   for (const FuseJob& job : jobs) {
-    for (const sim::OutageResult& r : job.result.outages) add_row(table, row_of(job, r));
+    for (const sim::OutageResult& r : job.result.outages) add_row(table, outage_row(job, r));
   }
   table.print();
 }
@@ -134,9 +134,10 @@ void print_outages(const std::vector<FuseJob>& jobs) {
 void warn_of(const FuseLog& log) {
   const LogSummary& summary = log.summary;
   if (summary.carried_over > 0) {
-    spdlog::warn("{} log {}: {} of {} lines repeat the time of the line before: their increments "
-                 "were added to the next one",
-                 log.title, log.path.string(), summary.carried_over, summary.lines);
+    spdlog::warn(
+        "{} log {}: {} of {} lines repeat the time of the line before: their increments "
+        "were added to the next one",
+        log.title, log.path.string(), summary.carried_over, summary.lines);
   }
   if (summary.damaged_lines() > 0) {
     spdlog::warn("{} log {}: {} of {} lines are damaged and not used", log.title, log.path.string(),
@@ -164,7 +165,7 @@ std::vector<FuseLog> logs_of(const FuseJob& job) {
   return logs;
 }
 
-Row row_of(const FuseJob& job, const sim::OutageResult& r) {
+Row outage_row(const FuseJob& job, const sim::OutageResult& r) {
   const bool by_reference = r.against == sim::Against::kReference;
   const bool is_scored = r.against != sim::Against::kNothing;
   const auto scored = [is_scored](double value) { return is_scored ? Json(value) : Json(); };
@@ -183,7 +184,7 @@ Row row_of(const FuseJob& job, const sim::OutageResult& r) {
           {"", "against", is_scored ? Json(by_reference ? "reference" : "gnss") : Json()}};
 }
 
-Row row_of(const sim::OutageSummary& s) {
+Row outage_row(const sim::OutageSummary& s) {
   const auto scored = [&s](double value) { return s.count > 0 ? Json(value) : Json(); };
   return {{"duration, s", "", fmt::format("{:g}", s.duration_s)},
           {"", "duration_s", s.duration_s},

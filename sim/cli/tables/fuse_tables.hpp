@@ -18,8 +18,8 @@ struct FuseLog {
 std::vector<FuseLog> logs_of(const FuseJob& job);
 
 /// How an outage, and outages of one length, are shown.
-Row row_of(const FuseJob& job, const sim::OutageResult& outage);
-Row row_of(const sim::OutageSummary& summary);
+Row outage_row(const FuseJob& job, const sim::OutageResult& outage);
+Row outage_row(const sim::OutageSummary& summary);
 
 /// All runs together. Means are weighted by their counts.
 struct FuseTotals {
