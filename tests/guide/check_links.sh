@@ -8,10 +8,10 @@ cd "$1"
 broken=0
 while IFS=: read -r page link; do
   target=${link%%#*}
-  [[ -z $target || $target == *://* || -e $(dirname "$page")/$target ]] && continue
+  [[ -z $target || $target == *://* || -e ${page%/*}/$target ]] && continue
   echo "$page: link to $target, which is not there"
   broken=1
-done < <(grep -roP '\]\(\K[^)\s]+' --include='*.md' README.md docs)
+done < <(grep -roP '\]\(\K[^)\s]+' --include='*.md' ./README.md ./docs)
 
 while read -r path; do
   [[ -e $path ]] && continue
