@@ -12,7 +12,7 @@ namespace {
 
 constexpr Quantity kDuration{"duration", kTimes, between(kShortestSceneS, kLongestSceneS)};
 constexpr Quantity kImuRate{"imu_rate", {&units::kHz}, between(1.0, 1e4)};
-constexpr std::int64_t kMostTrials = 1'000'000;
+constexpr std::int64_t kMostSceneTrials = 1'000'000;
 
 /// A scene while it is read.
 class SceneReader {
@@ -64,7 +64,7 @@ class SceneReader {
     if (!wanted_duration_s_) duration_s_ = duration_s;
     set(section, kImuRate, scene_.imu_rate_hz);
     scene_.trials =
-        static_cast<int>(section.integer("trials", 1, kMostTrials).value_or(scene_.trials));
+        static_cast<int>(section.integer("trials", 1, kMostSceneTrials).value_or(scene_.trials));
     constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
     scene_.first_seed =
         static_cast<std::uint64_t>(section.integer("first_seed", 0, kLargest)
