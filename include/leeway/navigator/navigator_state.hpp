@@ -113,7 +113,8 @@ class NavigatorState {
   CoastMonitor coast_{};
   MountEstimator mount_{};
   ReceiverNoise position_noise_{1.0, false};  // its errors are those of the fix before
-  ReceiverNoise velocity_noise_{0.5, true};
+  // A third: some state for each axis what is of all three, or the double of it.
+  ReceiverNoise velocity_noise_{1.0 / 3.0, true};
   std::optional<Eigen::Matrix3d> C_bs_;
   std::optional<HeadingBank> bank_{};
   UpdateOutcome last_update_{};
