@@ -9,10 +9,12 @@
 #include "leeway/covariance/covariance.hpp"
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/ekf/held_update.hpp"
 #include "leeway/model/gnss_measurement.hpp"
+#include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
-#include "sim/analysis/truth_model.hpp"
+#include "sim/analysis/scene_covariance.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -21,6 +23,10 @@ using Moment = CovariancePoint::Moment;
 using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then true
 
 constexpr double kSettledRelative = 1e-3;
+
+// As the navigator's motion_hides_heading().
+constexpr double kEvenS = 10.0;
+constexpr double kEvenFixes = 3.0;
 
 /// A step must resolve the sensors' in-run drift.
 double step_limit_s(const ImuErrorModel& imu) {
@@ -31,80 +37,52 @@ double step_limit_s(const ImuErrorModel& imu) {
   return std::max(0.1 * shortest_s, 0.01);
 }
 
-ErrorMatrix initial_claim(const Scene& scene) {
-  return initial_covariance({truth_at(scene.trajectory, 0.0).nav, {}}, initial_sigma(scene),
-                            scene.filter.imu, scene.filter.biases);
+/// A navigator takes positions as good as carrier phase gives them for white.
+double believed_correlation_s(const Scene& scene) {
+  constexpr double kFixedM = 0.05;
+  const double variance_m2 = fix_variance(scene.gnss.errors).head<3>().sum();
+  const bool is_fixed = variance_m2 < 3.0 * kFixedM * kFixedM;
+  const bool is_navigator = scene.estimator == SceneEstimator::kNavigator;
+  return is_navigator && is_fixed ? 0.0 : scene.filter.gnss_correlation_s;
 }
 
-ErrorMatrix without_biases(ErrorMatrix P) {
-  P.bottomRightCorner<6, 6>().setZero();
-  return P;
+/// Whether nothing has shown the heading for a while: no horizontal acceleration beyond that of tilt.
+bool moves_evenly(const Trajectory& trajectory, double t_s, double for_s) {
+  constexpr double kEvenMps2 = 0.05;
+  constexpr double kStepS = 0.5;
+  for (double back_s = 0.0; back_s <= for_s; back_s += kStepS) {
+    const NavState now = truth_at(trajectory, std::max(t_s - back_s, 0.0)).nav;
+    const NavState before = truth_at(trajectory, std::max(t_s - back_s - kStepS, 0.0)).nav;
+    if ((now.v_e_mps - before.v_e_mps).norm() > kEvenMps2 * kStepS) return false;
+  }
+  return true;
 }
 
-/// The covariance that a scene's filter claims and the true one, side by side.
-class SceneCovariance {
- public:
-  /// At the scene's start. @param by_source  keeps the sources apart, for error_budget()
-  SceneCovariance(const Scene& scene, bool by_source)
-      : imu_(scene.filter.imu),
-        noise_(process_noise(scene.filter.imu, scene.filter.biases)),
-        P_(initial_claim(scene)),
-        truth_(std::in_place, scene, without_biases(P_), std::array{noise_}, by_source) {
-    const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
-    if (fixes_as_white && truth_->is_known_to(P_, fix_variance(scene.gnss.errors))) {
-      truth_.reset();
-    }
-  }
-
-  void propagate(const Leg& leg) {
-    leeway::propagate(P_, leg.Phi, with_motion(noise_, imu_, leg.motion));
-    if (truth_) truth_->propagate(leg);
-  }
-
-  /// Takes the fix into both with the filter's gains.
-  void update(const FixRows& fix) {
-    FixGains<1> gains;
-    for (int row = 0; row < fix.H.rows(); ++row) {
-      const ErrorVector h = fix.H.row(row).transpose();
-      const ErrorVector cross = P_ * h;
-      gains.col(row) = cross / (h.dot(cross) + 1.0);
-      ErrorVector none = ErrorVector::Zero();
-      scalar_update(P_, none, h, 0.0);
-    }
-    if (truth_) truth_->update(fix, gains);
-  }
-
-  const ErrorMatrix& claimed() const { return P_; }
-  ErrorMatrix truth() const { return truth_ ? truth_->covariance() : P_; }
-
-  /// @pre made by source.
-  ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
-
- private:
-  ImuErrorModel imu_;
-  ProcessNoise noise_;
-  ErrorMatrix P_;
-  std::optional<TruthModel<1>> truth_;  // none: the filter knows all there is, P is the truth
-};
-
-/// The extremes of a stretch of the scene.
+/// The extremes of a stretch of the scene, to be compared with those of the next.
 struct Window {
   long index{-1};  // counted back from the end
+  Variances largest{Variances::Zero()};
+};
+
+/// What the fixes that count add up to.
+struct Score {
   int fixes{0};
   double claimed_sum_m2{0.0};
   double true_sum_m2{0.0};
-  Variances largest{Variances::Zero()};
   CovarianceAnalysis result{};
 };
 
+template <int kParameters>
 class Analysis {
  public:
   Analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config)
       : scene_(scene),
         track_(track),
         config_(config),
+        correlation_s_(believed_correlation_s(scene)),
         pair_(scene, config.by_source),
-        window_s_(scored_part_s(scene)) {}
+        window_s_(repeating_part_s(scene)),
+        scored_s_(scored_part_s(scene)) {}
 
   CovarianceAnalysis run() {
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
@@ -120,7 +98,7 @@ class Analysis {
   }
 
  private:
-  double advance(SceneCovariance& pair, double from_s, double to_s) const {
+  double advance(SceneCovariance<kParameters>& pair, double from_s, double to_s) const {
     const bool is_watched = &pair == &pair_ && config_.observer;
     track_.follow(from_s, to_s, [&](const Leg& leg) {
       pair.propagate(leg);
@@ -130,7 +108,7 @@ class Analysis {
     return to_s;
   }
 
-  CovariancePoint point(const SceneCovariance& pair, double t_s, Moment moment) const {
+  CovariancePoint point(const SceneCovariance<kParameters>& pair, double t_s, Moment moment) const {
     return {t_s, moment, truth_at(scene_.trajectory, t_s).nav.r_e_m, pair.claimed(), pair.truth()};
   }
 
@@ -139,28 +117,27 @@ class Analysis {
     Variances variances;
     variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
     window_.largest = window_.largest.max(variances);
-    // Of the earlier windows nothing but their repetition counts.
-    if (window_.index > 0 && !config_.observer) return;
+    if (!counts(arrival_s) && !config_.observer) return;
     if (arrival_s == now_s_) {
       score(pair_, now_s_);
     } else {
-      SceneCovariance ahead = pair_;
+      SceneCovariance<kParameters> ahead = pair_;
       score(ahead, advance(ahead, now_s_, arrival_s));
     }
   }
 
-  void score(const SceneCovariance& pair, double t_s) {
+  void score(const SceneCovariance<kParameters>& pair, double t_s) {
     const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
     if (config_.observer) config_.observer(before);
-    if (window_.index > 0) return;
+    if (!counts(t_s)) return;
     const Eigen::Matrix2d claimed =
         horizontal_covariance(before.r_e_m, before.claimed.block<3, 3>(kDr, kDr));
     const Eigen::Matrix2d truth =
         horizontal_covariance(before.r_e_m, before.truth.block<3, 3>(kDr, kDr));
-    ++window_.fixes;
-    window_.claimed_sum_m2 += claimed.trace();
-    window_.true_sum_m2 += truth.trace();
-    CovarianceAnalysis& r = window_.result;
+    ++score_.fixes;
+    score_.claimed_sum_m2 += claimed.trace();
+    score_.true_sum_m2 += truth.trace();
+    CovarianceAnalysis& r = score_.result;
     r.claimed_m = std::max(r.claimed_m, horizontal_error_m(scene_.limit.metric, claimed));
     const double true_m = horizontal_error_m(scene_.limit.metric, truth);
     if (true_m <= r.true_m) return;
@@ -171,10 +148,17 @@ class Analysis {
     r.error_budget = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
   }
 
-  void enter_window(double t_s) {
-    // A fix on the border of two counts for the later one.
-    const double windows_left = (scene_.duration_s - t_s) / window_s_;
-    const auto index = std::max(0L, static_cast<long>(std::ceil(windows_left - 1e-9)) - 1);
+  /// Which stretch of the scene a fix belongs to, counted back from the end. One on the border of
+  /// two counts for the later one.
+  long stretch_of(double arrival_s, double length_s) const {
+    const double left = (scene_.duration_s - arrival_s) / length_s;
+    return std::max(0L, static_cast<long>(std::ceil(left - 1e-9)) - 1);
+  }
+
+  bool counts(double arrival_s) const { return stretch_of(arrival_s, scored_s_) == 0; }
+
+  void enter_window(double arrival_s) {
+    const long index = stretch_of(arrival_s, window_s_);
     if (index == window_.index) return;
     if (window_.index >= 0) {
       compare_with_previous();
@@ -194,15 +178,15 @@ class Analysis {
   }
 
   CovarianceAnalysis finished() {
-    if (window_.index != 0) {
-      throw Error("scene '" + scene_.name + "': no fix in its last " + std::to_string(window_s_) +
+    if (score_.fixes == 0) {
+      throw Error("scene '" + scene_.name + "': no fix in its last " + std::to_string(scored_s_) +
                   " s: shorten the fix interval or move the outages");
     }
     compare_with_previous();
-    CovarianceAnalysis r = window_.result;
-    r.claimed_drms_m = std::sqrt(window_.claimed_sum_m2 / window_.fixes);
-    r.true_drms_m = std::sqrt(window_.true_sum_m2 / window_.fixes);
-    r.window_s = window_s_;
+    CovarianceAnalysis r = score_.result;
+    r.claimed_drms_m = std::sqrt(score_.claimed_sum_m2 / score_.fixes);
+    r.true_drms_m = std::sqrt(score_.true_sum_m2 / score_.fixes);
+    r.window_s = scored_s_;
     r.fixes = fixes_;
     r.settled = settled_s_.has_value();
     r.settled_s = settled_s_.value_or(scene_.duration_s);
@@ -211,24 +195,38 @@ class Analysis {
 
   void update() {
     const TruthPoint truth = truth_at(scene_.trajectory, now_s_);
-    const double weight =
-        gnss_position_weight(now_s_ - last_fix_s_, scene_.filter.gnss_correlation_s);
+    const double since_s = now_s_ - last_fix_s_;
+    const double weight = gnss_position_weight(since_s, correlation_s_);
     last_fix_s_ = now_s_;
     pair_.update(fix_rows(truth.nav, truth.omega_ib_b_radps, scene_.filter.lever_arm_b_m,
-                          scene_.gnss.errors, weight));
+                          scene_.gnss.errors, weight),
+                 held_at(since_s), now_s_);
     ++fixes_;
     if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
+  }
+
+  /// What the navigator does not let a fix tell: the heading at rest, or after a while of even motion.
+  Held held_at(double since_s) const {
+    if (scene_.estimator != SceneEstimator::kNavigator) return Held::kNothing;
+    const bool rolls = scene_.vehicle && scene_.vehicle->config.non_holonomic;
+    const double even_s = std::max(kEvenS, kEvenFixes * since_s);
+    const bool hides = rests(scene_.trajectory, now_s_) ||
+                       (!rolls && moves_evenly(scene_.trajectory, now_s_, even_s));
+    return hides && pair_.heading_is_hidden(now_s_) ? Held::kHeadingAndTurn : Held::kNothing;
   }
 
   const Scene& scene_;
   const ErrorTrack& track_;
   const CovarianceConfig& config_;
-  SceneCovariance pair_;
+  double correlation_s_;
+  SceneCovariance<kParameters> pair_;
   double window_s_;
+  double scored_s_;
   double now_s_{0.0};
   double last_fix_s_{-std::numeric_limits<double>::infinity()};  // the first fix has weight 1
   std::size_t fixes_{0};
   Window window_{};
+  Score score_{};
   std::optional<Variances> previous_{};
   std::optional<double> settled_s_{};
 };
@@ -248,7 +246,8 @@ void free_inertial(const Scene& scene, const ErrorTrack& track,
   validate(scene);
   Scene perfectly_started = scene;
   perfectly_started.initial = InitialSigma{};
-  SceneCovariance pair(perfectly_started, false);
+  perfectly_started.vehicle.reset();
+  SceneCovariance<0> pair(perfectly_started, false);
   CovariancePoint point;
   do {
     const Leg leg = track.leg(point.t_s, scene.duration_s);
@@ -263,7 +262,9 @@ void free_inertial(const Scene& scene, const ErrorTrack& track,
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
                            const CovarianceConfig& config) {
   validate(scene);
-  return Analysis(scene, track, config).run();
+  const bool has_parameters = scene.vehicle && scene.vehicle->config.uses_parameters();
+  if (has_parameters) return Analysis<kVehicleStates>(scene, track, config).run();
+  return Analysis<0>(scene, track, config).run();
 }
 
 }  // namespace leeway::sim

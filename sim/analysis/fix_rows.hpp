@@ -9,6 +9,20 @@
 
 namespace leeway::sim {
 
+/// What a row of a measurement is of. Those of a fix come first: position north, east, down, then
+/// velocity.
+enum RowKind : int {
+  kExactRow = 6,  ///< a constraint that holds exactly
+  kRateRow,       ///< the rate at rest, a second's mean
+  kOdometerRow,
+  kBarometerRow,
+  kHeadingRow,
+  kRowKinds,
+};
+
+/// Variances of what the sensors really err by, by RowKind, each in its unit's square.
+using RowVariances = Eigen::Matrix<double, kRowKinds, 1>;
+
 /// Rows are north, east, down of the position, then of the velocity.
 /// innovation = H x + per_sigma * (error of the receiver).
 struct FixRows {

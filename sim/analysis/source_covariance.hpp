@@ -19,36 +19,38 @@ namespace leeway::sim {
 /// Components of the errors of some filters on the same sensors and fixes, one filter below the
 /// other. A single filter follows a track whose biases decay as its own do. Several share a track
 /// whose biases do not decay: each filter's decay is then added beside it.
-template <int kFilters>
-inline constexpr int kErrorsOf{kErrorStates * (kFilters)};
+/// @tparam kParameters  of the vehicle, which a single filter may estimate too: 0 or kVehicleStates
+template <int kFilters, int kParameters = 0>
+inline constexpr int kErrorsOf{kErrorStates * (kFilters) + (kParameters)};
 
 /// Second moment E[x x^T] of these errors.
-template <int kFilters>
-using ErrorMoment = Eigen::Matrix<double, kErrorsOf<kFilters>, kErrorsOf<kFilters>>;
+template <int kFilters, int kParameters = 0>
+using ErrorMoment = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, kErrorsOf<kFilters, kParameters>>;
 
 /// Gains of each filter on the rows of a fix.
-template <int kFilters>
-using FixGains = Eigen::Matrix<double, kErrorsOf<kFilters>, 6>;
+template <int kFilters, int kParameters = 0>
+using FixGains = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, 6>;
 
 /// What enters the errors through each filter's own innovation, a column each.
-template <int kFilters>
-using ErrorGains = Eigen::Matrix<double, kErrorsOf<kFilters>, kFilters>;
+template <int kFilters, int kParameters = 0>
+using ErrorGains = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, kFilters>;
 
 /// One row of a fix and the filters' gains on it: error' = error - K innovation.
-template <int kFilters>
+template <int kFilters, int kParameters = 0>
 struct RowGain {
   int row{};
   double per_sigma{};
-  ErrorVector h{ErrorVector::Zero()};
-  ErrorGains<kFilters> K{ErrorGains<kFilters>::Zero()};
+  Eigen::Matrix<double, kErrorStates + kParameters, 1> h =
+      Eigen::Matrix<double, kErrorStates + kParameters, 1>::Zero();
+  ErrorGains<kFilters, kParameters> K{ErrorGains<kFilters, kParameters>::Zero()};
 };
 
 /// A Gauss-Markov process g of three axes, or a constant (tau infinite), that enters the errors
 /// through a bias state or through the position fixes, and is correlated with them.
-template <int kFilters>
+template <int kFilters, int kParameters = 0>
 struct MarkovSource {
   static constexpr int kFixes = -1;
-  using Cross = Eigen::Matrix<double, kErrorsOf<kFilters>, 3>;
+  using Cross = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, 3>;
 
   int enters_at{kFixes};  ///< kBa, kBg or kFixes
   GaussMarkov process{};
@@ -69,10 +71,10 @@ struct MarkovStart {
   }
 };
 
-/// Calls f(rows, first) with the rows of every filter's errors.
+/// Calls f(rows, first) with the 15 rows of every filter's errors.
 template <class Errors, class F>
 void for_each_filter(Errors& X, F&& f) {
-  for (int first = 0; first < X.rows(); first += kErrorStates) {
+  for (int first = 0; first + kErrorStates <= X.rows(); first += kErrorStates) {
     f(X.template middleRows<kErrorStates>(first), first);
   }
 }
@@ -83,40 +85,47 @@ void carry(const Transition& Phi, Errors& X) {
 }
 
 /// What a row measures of every filter's errors.
-template <class Errors>
-auto measured(const ErrorVector& h, const Errors& X) {
+template <class Row, class Errors>
+auto measured(const Row& h, const Errors& X) {
   Eigen::Matrix<double, Errors::RowsAtCompileTime / kErrorStates, Errors::ColsAtCompileTime> all;
-  for_each_filter(
-      X, [&](auto rows, int first) { all.row(first / kErrorStates) = h.transpose() * rows; });
+  if constexpr (Row::RowsAtCompileTime > kErrorStates) {
+    all = h.transpose() * X;
+  } else {
+    for_each_filter(
+        X, [&](auto rows, int first) { all.row(first / kErrorStates) = h.transpose() * rows; });
+  }
   return all;
 }
 
 /// E[x x^T] from initial errors and white noise, and from processes with a memory of their own.
-template <int kFilters>
+template <int kFilters, int kParameters = 0>
 class SourceCovariance {
  public:
   /// @param filters  of which only the times of the bias states count
   explicit SourceCovariance(const std::array<ProcessNoise, kFilters>& filters)
       : filters_(filters) {}
 
-  ErrorMoment<kFilters> P{ErrorMoment<kFilters>::Zero()};
+  ErrorMoment<kFilters, kParameters> P{ErrorMoment<kFilters, kParameters>::Zero()};
   ProcessNoise noise{};
-  Eigen::Matrix<double, 6, 1> fix_variance{Eigen::Matrix<double, 6, 1>::Zero()};  ///< by row
+  RowVariances row_variance{RowVariances::Zero()};  ///< by RowKind
+  Eigen::Matrix<double, kParameters, 1> walk_per_s =
+      Eigen::Matrix<double, kParameters, 1>::Zero();  ///< of the vehicle's parameters
 
   /// Adds the moment of an error that all filters share, to its rows from `row` on.
   template <class Moment>
   void add_shared(int row, const Moment& moment) {
-    for (int i = row; i < P.rows(); i += kErrorStates) {
-      for (int j = row; j < P.cols(); j += kErrorStates) {
+    constexpr int kAll = kErrorStates * kFilters;
+    for (int i = row; i < kAll; i += kErrorStates) {
+      for (int j = row; j < kAll; j += kErrorStates) {
         P.block(i, j, moment.rows(), moment.cols()) += moment;
       }
     }
   }
 
-  void add_process(MarkovSource<kFilters> source, const MarkovStart& start) {
+  void add_process(MarkovSource<kFilters, kParameters> source, const MarkovStart& start) {
     const Eigen::Matrix3d variance = start.variance.asDiagonal();
     source.G = variance + start.mean * start.mean.transpose();
-    if (source.enters_at != MarkovSource<kFilters>::kFixes) {
+    if (source.enters_at != MarkovSource<kFilters, kParameters>::kFixes) {
       add_shared(source.enters_at, start.error_moment());
       for_each_filter(source.S, [&](auto rows, int) {
         rows.template middleRows<3>(source.enters_at) =
@@ -132,22 +141,23 @@ class SourceCovariance {
     // Half before and half after, as propagate() does with noise: second order in the step.
     step_processes(0.5 * leg.Phi.dt_s);
     step_errors(leg);
-    for (MarkovSource<kFilters>& source : processes_) carry(leg.Phi, source.S);
+    for (MarkovSource<kFilters, kParameters>& source : processes_) carry(leg.Phi, source.S);
     step_processes(0.5 * leg.Phi.dt_s);
   }
 
   /// error' = error - K innovation, in second moments.
-  void update(const RowGain<kFilters>& gain) {
+  void update(const RowGain<kFilters, kParameters>& gain) {
     const double per_sigma = gain.per_sigma;
-    ErrorGains<kFilters> cross;  // E[error innovation^T]
+    ErrorGains<kFilters, kParameters> cross;  // E[error innovation^T]
+    constexpr int kOwn = kErrorStates + kParameters;
     for (int i = 0; i < kFilters; ++i) {
-      cross.col(i) = P.template middleCols<kErrorStates>(i * kErrorStates) * gain.h;
+      cross.col(i) = P.template middleCols<kOwn>(i * kOwn) * gain.h;
     }
     Eigen::Matrix<double, kFilters, kFilters> variance = measured(gain.h, cross);
-    variance.array() += fix_variance(gain.row) * per_sigma * per_sigma;
-    for (MarkovSource<kFilters>& source : processes_) {
+    variance.array() += row_variance(gain.row) * per_sigma * per_sigma;
+    for (MarkovSource<kFilters, kParameters>& source : processes_) {
       auto innovation_g = measured(gain.h, source.S);  // E[innovation g^T]
-      if (source.enters_at == MarkovSource<kFilters>::kFixes && gain.row < 3) {
+      if (source.enters_at == MarkovSource<kFilters, kParameters>::kFixes && gain.row < 3) {
         // Of the variance only the symmetric part counts.
         variance.array().colwise() += 2.0 * per_sigma * innovation_g.col(gain.row).array() +
                                       per_sigma * per_sigma * source.G(gain.row, gain.row);
@@ -156,13 +166,14 @@ class SourceCovariance {
       }
       source.S -= gain.K * innovation_g;
     }
-    const ErrorGains<kFilters> half = cross - gain.K * (0.5 * variance);
+    const ErrorGains<kFilters, kParameters> half = cross - gain.K * (0.5 * variance);
     P.noalias() -= gain.K * half.transpose() + half * gain.K.transpose();
   }
 
  private:
   void step_errors(const Leg& leg) {
-    if constexpr (kFilters == 1) {
+    P.diagonal().template tail<kParameters>() += leg.Phi.dt_s * walk_per_s;
+    if constexpr (kFilters == 1 && kParameters == 0) {
       leeway::propagate(P, leg.Phi, noise);
     } else {
       const ErrorMatrix half = noise_variance(noise, 0.5 * leg.Phi.dt_s).asDiagonal();
@@ -177,7 +188,7 @@ class SourceCovariance {
 
   void step_processes(double dt_s) {
     if constexpr (kFilters > 1) let_biases_decay(dt_s);
-    for (MarkovSource<kFilters>& source : processes_) step_process(source, dt_s);
+    for (MarkovSource<kFilters, kParameters>& source : processes_) step_process(source, dt_s);
   }
 
   /// What a filter leaves of its bias state.
@@ -193,7 +204,7 @@ class SourceCovariance {
         const int row = filter * kErrorStates + bias;
         P.template middleRows<3>(row) *= own;
         P.template middleCols<3>(row) *= own;
-        for (MarkovSource<kFilters>& source : processes_) {
+        for (MarkovSource<kFilters, kParameters>& source : processes_) {
           source.S.template middleRows<3>(row) *= own;
         }
       }
@@ -202,9 +213,9 @@ class SourceCovariance {
 
   /// g' = phi g + w; a bias state that a filter lets decay by its own phi gains delta g + w on the
   /// filter's idea of it.
-  void step_process(MarkovSource<kFilters>& source, double dt_s) {
+  void step_process(MarkovSource<kFilters, kParameters>& source, double dt_s) {
     const double phi = bias_decay(dt_s, source.process.tau_s);
-    if (source.enters_at == MarkovSource<kFilters>::kFixes) {
+    if (source.enters_at == MarkovSource<kFilters, kParameters>::kFixes) {
       source.S *= phi;
       return;
     }
@@ -228,28 +239,28 @@ class SourceCovariance {
   }
 
   std::array<ProcessNoise, kFilters> filters_;
-  std::vector<MarkovSource<kFilters>> processes_{};
+  std::vector<MarkovSource<kFilters, kParameters>> processes_{};
 };
 
 /// Unknown constants of the sensors: the errors are linear in them. One sensitivity serves all.
-template <int kFilters>
+template <int kFilters, int kParameters = 0>
 class ParameterSources {
  public:
   void propagate(const Leg& leg) {
     for_each_filter(S_, [&leg](auto rows, int) { rows = times(leg.Phi, rows) + leg.B; });
   }
 
-  void update(const RowGain<kFilters>& gain) { S_ -= gain.K * measured(gain.h, S_); }
+  void update(const RowGain<kFilters, kParameters>& gain) { S_ -= gain.K * measured(gain.h, S_); }
 
   /// @param second_moment  E[p p^T] of the parameters that belong to the source
-  ErrorMoment<kFilters> covariance(
+  ErrorMoment<kFilters, kParameters> covariance(
       const Eigen::Matrix<double, kSensorParameters, kSensorParameters>& second_moment) const {
     const Sensitivity half = S_.lazyProduct(second_moment);
     return half.lazyProduct(S_.transpose());
   }
 
  private:
-  using Sensitivity = Eigen::Matrix<double, kErrorsOf<kFilters>, kSensorParameters>;
+  using Sensitivity = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, kSensorParameters>;
   Sensitivity S_{Sensitivity::Zero()};
 };
 

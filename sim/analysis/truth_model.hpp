@@ -21,7 +21,7 @@ using ParameterMoment = Eigen::Matrix<double, kSensorParameters, kSensorParamete
 using ParameterMoments = std::vector<std::pair<ErrorSource, ParameterMoment>>;
 ParameterMoments parameter_moments(const ImuErrorModel& imu);
 
-template <int kFilters>
+template <int kFilters, int kParameters = 0>
 class TruthModel {
  public:
   /// @param initial_nav  covariance of attitude, velocity and position at the start, of all filters
@@ -35,12 +35,15 @@ class TruthModel {
     add_triad(scene.imu.accelerometer, kBa, believed.accelerometer.bias);
     add_triad(scene.imu.gyro, kBg, believed.gyro.bias);
     const GnssErrorModel& gnss = scene.gnss.errors;
-    of(ErrorSource::kGnssPosition).fix_variance.template head<3>() +=
+    of(ErrorSource::kGnssPosition).row_variance.template head<3>() +=
         gnss.position_sigma_n_m.cwiseAbs2();
-    of(ErrorSource::kGnssVelocity).fix_variance.template tail<3>() +=
+    of(ErrorSource::kGnssVelocity).row_variance.template segment<3>(3) +=
         gnss.velocity_sigma_n_mps.cwiseAbs2();
+    of(ErrorSource::kGyroNoise).row_variance(kRateRow) +=
+        scene.imu.gyro.noise_density * scene.imu.gyro.noise_density;
+    if (scene.vehicle) add_vehicle(*scene.vehicle);
     if (gnss.correlated_sigma_n_m.isZero(0.0)) return;
-    MarkovSource<kFilters> source;
+    MarkovSource<kFilters, kParameters> source;
     source.process.tau_s = gnss.correlation_time_s;  // its drive never enters the error
     MarkovStart start;
     start.variance = gnss.correlated_sigma_n_m.cwiseAbs2();
@@ -48,13 +51,13 @@ class TruthModel {
   }
 
   /// Whether the filter knows everything that goes on: its own covariance is then the true one.
-  bool is_known_to(const ErrorMoment<kFilters>& filter_P,
+  bool is_known_to(const ErrorMoment<kFilters, kParameters>& filter_P,
                    const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const {
-    const SourceCovariance<kFilters>& all = sources_.front().second;
+    const SourceCovariance<kFilters, kParameters>& all = sources_.front().second;
     if (by_source_ || all.has_processes() || !parameter_moments_.empty()) return false;
     return all.P.isApprox(filter_P, 1e-12) &&
            noise_variance(all.noise, 1.0) == noise_variance(filters_.front(), 1.0) &&
-           all.fix_variance.isApprox(filter_fix_variance, 1e-12);
+           all.row_variance.template head<6>().isApprox(filter_fix_variance, 1e-12);
   }
 
   void propagate(const Leg& leg) {
@@ -63,21 +66,26 @@ class TruthModel {
   }
 
   /// @param gains  on the rows one after the other: each sees the errors that the last one left
-  void update(const FixRows& fix, const FixGains<kFilters>& gains) {
+  void update(const FixRows& fix, const FixGains<kFilters, kParameters>& gains) {
+    constexpr int kOwn = kErrorStates + kParameters;
     for (int row = 0; row < fix.H.rows(); ++row) {
-      RowGain<kFilters> gain{row, fix.per_sigma(row), fix.H.row(row).transpose()};
+      RowGain<kFilters, kParameters> gain{row, fix.per_sigma(row)};
+      gain.h.template head<kErrorStates>() = fix.H.row(row).transpose();
       for (int i = 0; i < kFilters; ++i) {
-        const int first = i * kErrorStates;
-        gain.K.col(i).template segment<kErrorStates>(first) =
-            gains.col(row).template segment<kErrorStates>(first);
+        gain.K.col(i).template segment<kOwn>(i * kOwn) =
+            gains.col(row).template segment<kOwn>(i * kOwn);
       }
-      for (auto& [name, source] : sources_) source.update(gain);
-      if (!parameter_moments_.empty()) parameters_.update(gain);
+      update(gain);
     }
   }
 
-  ErrorMoment<kFilters> covariance() const {
-    ErrorMoment<kFilters> sum = ErrorMoment<kFilters>::Zero();
+  void update(const RowGain<kFilters, kParameters>& gain) {
+    for (auto& [name, source] : sources_) source.update(gain);
+    if (!parameter_moments_.empty()) parameters_.update(gain);
+  }
+
+  ErrorMoment<kFilters, kParameters> covariance() const {
+    ErrorMoment<kFilters, kParameters> sum = ErrorMoment<kFilters, kParameters>::Zero();
     for (const auto& [name, source] : sources_) sum += source.P;
     if (parameter_moments_.empty()) return sum;
     ParameterMoment moment = ParameterMoment::Zero();
@@ -88,7 +96,7 @@ class TruthModel {
   /// Of the first filter.
   ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const {
     ErrorBudget error_budget;
-    const auto add = [&](ErrorSource name, const ErrorMoment<kFilters>& P) {
+    const auto add = [&](ErrorSource name, const ErrorMoment<kFilters, kParameters>& P) {
       error_budget.push_back({name, C_en.transpose() * P.template block<3, 3>(kDr, kDr) * C_en});
     };
     for (const auto& [name, source] : sources_) add(name, source.P);
@@ -97,11 +105,29 @@ class TruthModel {
   }
 
  private:
-  SourceCovariance<kFilters>& of(ErrorSource source) {
+  SourceCovariance<kFilters, kParameters>& of(ErrorSource source) {
     if (sources_.empty() || by_source_) {
-      sources_.emplace_back(source, SourceCovariance<kFilters>(filters_));
+      sources_.emplace_back(source, SourceCovariance<kFilters, kParameters>(filters_));
     }
     return sources_.back().second;
+  }
+
+  /// What the sensors of the vehicle really are: as bad as the filter takes them for.
+  void add_vehicle(const SceneVehicle& vehicle) {
+    const auto add = [&](const std::optional<VehicleSensor>& sensor, ErrorSource name, RowKind row,
+                         int parameter) {
+      if (!sensor) return;
+      SourceCovariance<kFilters, kParameters>& source = of(name);
+      source.row_variance(row) += sensor->sigma * sensor->sigma;
+      if (kParameters == 0 || parameter < 0) return;
+      const VehicleState believed = vehicle_state(vehicle.config);
+      const int at = kErrorStates + parameter;
+      source.P(at, at) += believed.P(parameter, parameter);
+      source.walk_per_s(parameter) += believed.random_walk_per_s(parameter);
+    };
+    add(vehicle.odometer, ErrorSource::kOdometer, kOdometerRow, kOdometerScale);
+    add(vehicle.barometer, ErrorSource::kBarometer, kBarometerRow, kHeightOffset);
+    add(vehicle.heading, ErrorSource::kHeading, kHeadingRow, -1);
   }
 
   bool all_take_bias_for(double tau_s, int bias_row) const {
@@ -112,7 +138,7 @@ class TruthModel {
 
   void add_triad(const TriadErrorModel& triad, int bias_row, const Eigen::Vector3d& known_bias) {
     const auto of_triad = [&](ErrorSource accelerometer,
-                              ErrorSource gyro) -> SourceCovariance<kFilters>& {
+                              ErrorSource gyro) -> SourceCovariance<kFilters, kParameters>& {
       return of(bias_row == kBa ? accelerometer : gyro);
     };
     ProcessNoise& noise = of_triad(ErrorSource::kAccelerometerNoise, ErrorSource::kGyroNoise).noise;
@@ -129,7 +155,7 @@ class TruthModel {
               of_triad(ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift));
   }
 
-  void add_turn_on(const MarkovStart& turn_on, int bias_row, SourceCovariance<kFilters>& bias) {
+  void add_turn_on(const MarkovStart& turn_on, int bias_row, SourceCovariance<kFilters, kParameters>& bias) {
     if (all_take_bias_for(std::numeric_limits<double>::infinity(), bias_row)) {
       // The states are as constant as the bias: nothing else need be remembered.
       bias.add_shared(bias_row, turn_on.error_moment());
@@ -139,7 +165,7 @@ class TruthModel {
     }
   }
 
-  void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance<kFilters>& drift) {
+  void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance<kFilters, kParameters>& drift) {
     MarkovStart start;
     start.variance.setConstant(in_run.sigma * in_run.sigma);
     if (kFilters > 1 || !all_take_bias_for(in_run.tau_s, bias_row)) {
@@ -155,9 +181,9 @@ class TruthModel {
   std::array<ProcessNoise, kFilters> filters_;
   bool by_source_;
   /// One for all, or one each.
-  std::vector<std::pair<ErrorSource, SourceCovariance<kFilters>>> sources_{};
+  std::vector<std::pair<ErrorSource, SourceCovariance<kFilters, kParameters>>> sources_{};
   ParameterMoments parameter_moments_;
-  ParameterSources<kFilters> parameters_{};
+  ParameterSources<kFilters, kParameters> parameters_{};
 };
 
 }  // namespace leeway::sim

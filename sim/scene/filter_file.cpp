@@ -63,6 +63,7 @@ void read_filter(TomlSection& section, Scene& scene) {
       }
     }
   });
+  scene.estimator = section.choice<SceneEstimator>("estimator").value_or(scene.estimator);
   scene.imu_divider = static_cast<int>(
       section.integer("imu_divider", 1, kLargestDivider).value_or(scene.imu_divider));
 }

@@ -50,18 +50,39 @@ InitialSigma initial_sigma(const Scene& scene) {
   return sigma;
 }
 
-double scored_part_s(const Scene& scene) {
+double repeating_part_s(const Scene& scene) {
   return std::max(
       {scene.limit.last_s, 2.0 * scene.gnss.interval_s, scene.trajectory.period_s.value_or(0.0)});
 }
 
+double scored_part_s(const Scene& scene) {
+  const GnssScenario& gnss = scene.gnss;
+  if (gnss.settle_s == 0.0) return repeating_part_s(scene);
+  // Between the arrivals of the last fix of those that settle the filter and of the next one.
+  return scene.duration_s - gnss.settle_s - gnss.latency_s - 0.5 * gnss.interval_s;
+}
+
+NavigatorConfig navigator_config(const Scene& scene) {
+  NavigatorConfig config;
+  config.filter = scene.filter;
+  if (scene.vehicle) config.vehicle = scene.vehicle->config;
+  config.timing.max_imu_rate_hz = std::max(config.timing.max_imu_rate_hz, scene.imu_rate_hz);
+  config.timing.max_lateness_s = std::max(config.timing.max_lateness_s, scene.gnss.latency_s);
+  return config;
+}
+
 std::vector<double> fix_times_s(const GnssScenario& gnss, double duration_s) {
   std::vector<double> times_s;
-  for (std::int64_t k = 1;; ++k) {
-    const double t_s = static_cast<double>(k) * gnss.interval_s;
-    if (t_s > duration_s * (1.0 + 1e-12)) return times_s;
-    if (!is_withheld(gnss.outages, t_s)) times_s.push_back(std::min(t_s, duration_s));
-  }
+  const auto add_until = [&](double end_s, double from_s, double interval_s) {
+    for (std::int64_t k = 1;; ++k) {
+      const double t_s = from_s + static_cast<double>(k) * interval_s;
+      if (t_s > end_s * (1.0 + 1e-12)) return;
+      if (!is_withheld(gnss.outages, t_s)) times_s.push_back(std::min(t_s, end_s));
+    }
+  };
+  add_until(std::min(gnss.settle_s, duration_s), 0.0, gnss.settle_interval_s);
+  add_until(duration_s, gnss.settle_s, gnss.interval_s);
+  return times_s;
 }
 
 }  // namespace leeway::sim

@@ -12,6 +12,8 @@ namespace {
 
 constexpr Quantity kDuration{"duration", kTimes, between(kShortestSceneS, kLongestSceneS)};
 constexpr Quantity kImuRate{"imu_rate", {&units::kHz}, between(1.0, 1e4)};
+constexpr Quantity kSettle{"settle", kTimes, zero_or(1.0, kLongestSceneS)};
+constexpr Quantity kSettleInterval{"settle_interval", kTimes, between(1e-3, kLongestSceneS)};
 constexpr std::int64_t kMostSceneTrials = 1'000'000;
 
 /// A scene while it is read.
@@ -38,14 +40,19 @@ class SceneReader {
     });
     root.table("gnss", [this](TomlSection& section) {
       scene_.gnss = read_gnss(section, scene_.duration_s, wanted_duration_s_.has_value());
+      settle_s_ = section.number(kSettle);
+      set(section, kSettleInterval, scene_.gnss.settle_interval_s);
       require_step(section);
     });
+    root.table("vehicle", [this](TomlSection& section) { scene_.vehicle = read_vehicle(section); });
+    if (scene_.vehicle) scene_.estimator = SceneEstimator::kNavigator;
     believe_the_receiver();
     root.table("filter", [this](TomlSection& section) {
       read_filter(section, scene_);
       section.table("imu",
                     [this](TomlSection& imu) { scene_.filter.imu = read_imu(imu, folder_).model; });
     });
+    scene_.gnss.settle_s = settle_s_.value_or(default_settle_s());
     root.table("initial", [this](TomlSection& section) { scene_.initial = read_initial(section); });
     read_limit_section(root);
     return scene_;
@@ -97,8 +104,20 @@ class SceneReader {
         errors.correlated_sigma_n_m.isZero(0.0) ? 0.0 : errors.correlation_time_s;
   }
 
+  /// A navigator that has been running: five minutes, as far as the scene and its outages allow.
+  double default_settle_s() const {
+    constexpr double kUsualS = 300.0;
+    if (scene_.estimator == SceneEstimator::kEkf) return 0.0;
+    double settle_s = std::min(kUsualS, 0.5 * scene_.duration_s);
+    for (const Outage& outage : scene_.gnss.outages) {
+      settle_s = std::min(settle_s, outage.start_s);
+    }
+    return settle_s;
+  }
+
   std::filesystem::path folder_;
   std::optional<double> wanted_duration_s_;
+  std::optional<double> settle_s_{};
   std::optional<double> duration_s_;
   Scene scene_{};
   bool uses_old_name_{false};

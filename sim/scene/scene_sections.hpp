@@ -29,6 +29,9 @@ NamedImuModel read_imu(TomlSection& section, const std::filesystem::path& folder
 /// [gnss]. Outages must be within the duration, or are left out beyond it.
 GnssScenario read_gnss(TomlSection& section, double duration_s, bool leave_out_late_outages);
 
+/// [vehicle].
+SceneVehicle read_vehicle(TomlSection& section);
+
 /// [filter], but for its IMU: how the scene's filter runs.
 void read_filter(TomlSection& section, Scene& scene);
 

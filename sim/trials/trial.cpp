@@ -10,6 +10,7 @@
 #include "leeway/sim/scene/receiver.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "leeway/sim/tools/random.hpp"
+#include "sim/trials/estimators.hpp"
 #include "sim/trials/player.hpp"
 #include "sim/trials/recorded_trial.hpp"
 #include "sim/trials/trial_score.hpp"
@@ -41,11 +42,7 @@ void require_step(const Scene& scene, const TrialPlan::Fix& fix) {
          std::to_string(fix.arrives + 1) + ": both must be multiples of it");
 }
 
-Ekf started(const TrialPlan& plan, std::uint64_t seed) {
-  const TrialStart start = trial_start(plan, seed);
-  return {plan.scene().filter, start.estimate, start.P};
-}
-
+template <class UnderTest>
 class Trial {
  public:
   Trial(const TrialPlan& plan, std::uint64_t seed,
@@ -54,7 +51,7 @@ class Trial {
         observer_(observer),
         sensor_(plan.scene().imu, Random(seed, 0, kImuStream)),
         receiver_(plan.scene().trajectory, plan.scene().gnss, seed),
-        filter_(started(plan, seed)) {
+        estimator_(plan, seed) {
     score_.seed = seed;
   }
 
@@ -67,10 +64,8 @@ class Trial {
     };
     play(plan_.increments().size(), divider, plan_.fixes(),
          while_finite([&](std::size_t k) { advance(k + 1 - divider, divider); }),
-         while_finite([&](const TrialPlan::Fix& fix) { take_fix(fix); }),
-         while_finite([&](const TrialPlan::Fix& fix) {
-           if (fix.scored) score();
-         }));
+         while_finite([&](const TrialPlan::Fix& fix) { take(fix); }),
+         while_finite([&](const TrialPlan::Fix& fix) { arrive(fix); }));
     if (!score_.finite) score_.diverged = true;
     return score_;
   }
@@ -81,45 +76,41 @@ class Trial {
     for (std::size_t k = first; k < first + count; ++k) {
       append(inc, sensor_.measure(plan_.increments()[k]));
     }
-    filter_.predict(inc);
-    if (without_fix_) without_fix_->predict(inc);
+    now_ = inc.time;
+    estimator_.advance(inc);
   }
 
-  void take_fix(const TrialPlan::Fix& fix) {
+  void take(const TrialPlan::Fix& fix) {
     if (observer_) tell();
-    if (fix.scored) without_fix_ = filter_;
-    const UpdateOutcome outcome =
-        filter_.update(receiver_.fix_at(to_seconds(filter_.estimate().nav.time)));
-    if (outcome.outcome == UpdateOutcome::Outcome::kGated) ++score_.gated;
-    if (outcome.outcome == UpdateOutcome::Outcome::kFused) {
-      ++score_.fused;
-      if (fix.scored) {
-        score_.nis += outcome.nis;
-        score_.nis_dof += outcome.dof;
-      }
-    }
-    if (!outcome.covariance_positive || !filter_.estimate().nav.r_e_m.allFinite()) {
-      score_.finite = false;
-    }
+    estimator_.take(receiver_.fix_at(to_seconds(now_)), fix.scored, score_);
+  }
+
+  void arrive(const TrialPlan::Fix& fix) {
+    if (fix.scored) score();
+    estimator_.arrive(fix.scored, score_);
   }
 
   void score() {
-    const Estimate& estimate = without_fix_->estimate();
+    const std::optional<TrialBelief> belief = estimator_.at_arrival();
+    if (!belief) {
+      // No answer where one is wanted.
+      score_.diverged = true;
+      return;
+    }
     Estimate truth;
-    truth.nav = truth_at(plan_.scene().trajectory, to_seconds(estimate.nav.time)).nav;
+    truth.nav = truth_at(plan_.scene().trajectory, to_seconds(now_)).nav;
     truth.bias = {sensor_.accelerometer_bias_mps2(), sensor_.gyro_bias_radps()};
-    const ErrorMatrix P = without_fix_->covariance();
-    score_epoch(score_, truth, estimate, &P);
-    without_fix_.reset();
+    score_epoch(score_, truth, belief->estimate, &belief->P);
   }
 
   void tell() {
-    const Estimate& estimate = filter_.estimate();
-    const double t_s = to_seconds(estimate.nav.time);
+    const std::optional<TrialBelief> belief = estimator_.at_fix();
+    if (!belief) return;
+    const double t_s = to_seconds(now_);
     const Estimate truth{truth_at(plan_.scene().trajectory, t_s).nav, {}};
     const Eigen::Matrix2d P_ne_m2 =
-        horizontal_covariance(estimate.nav.r_e_m, filter_.covariance().block<3, 3>(kDr, kDr));
-    observer_({t_s, position_error_n_m(truth, estimate).head<2>().norm(),
+        horizontal_covariance(belief->estimate.nav.r_e_m, belief->P.block<3, 3>(kDr, kDr));
+    observer_({t_s, position_error_n_m(truth, belief->estimate).head<2>().norm(),
                horizontal_error_m(HorizontalMetric::kR95, P_ne_m2)});
   }
 
@@ -127,8 +118,8 @@ class Trial {
   const std::function<void(const TrialEpoch&)>& observer_;
   ImuErrorSimulator sensor_;
   Receiver receiver_;
-  Ekf filter_;
-  std::optional<Ekf> without_fix_{};  // the filter without the scored fix that is on its way
+  UnderTest estimator_;
+  Time now_{};
   TrialScore score_{};
 };
 
@@ -161,7 +152,10 @@ TrialPlan::TrialPlan(const Scene& scene, std::optional<double> score_last_s, int
 
 TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed,
                      const std::function<void(const TrialEpoch&)>& observer) {
-  return Trial(plan, seed, observer).run();
+  if (plan.scene().estimator == SceneEstimator::kNavigator) {
+    return Trial<NavigatorUnderTest>(plan, seed, observer).run();
+  }
+  return Trial<EkfUnderTest>(plan, seed, observer).run();
 }
 
 }  // namespace leeway::sim

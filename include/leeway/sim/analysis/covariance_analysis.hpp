@@ -33,6 +33,9 @@ enum class ErrorSource {
   kGnssPosition,      ///< white
   kGnssCorrelated,    ///< Gauss-Markov, of position
   kGnssVelocity,      ///< white
+  kOdometer,            ///< its scale and noise
+  kBarometer,           ///< its offset and noise
+  kHeading,             ///< noise of a measured heading
 };
 constexpr auto names(ErrorSource) {
   return std::array{"initial",
@@ -49,7 +52,10 @@ constexpr auto names(ErrorSource) {
                     "gyro_g_sensitivity",
                     "gnss_position",
                     "gnss_correlated",
-                    "gnss_velocity"};
+                    "gnss_velocity",
+                    "odometer",
+                    "barometer",
+                    "heading"};
 }
 
 /// Contribution of one source to the position error.
@@ -82,8 +88,8 @@ struct CovarianceConfig {
   std::function<void(const CovariancePoint&)> observer{};
 };
 
-/// Result of an analysis: the largest horizontal error just before a fix over the last part of the
-/// scene, scored_part_s(scene).
+/// Result of an analysis: the largest horizontal error just before a fix, outages included, over the
+/// last part of the scene, scored_part_s(scene).
 struct CovarianceAnalysis {
   double claimed_m{};  ///< by the scene's metric
   double true_m{};
@@ -92,9 +98,9 @@ struct CovarianceAnalysis {
   double worst_s{};         ///< when the true one is largest
   CovariancePoint worst{};  ///< there
   ErrorBudget error_budget{};  ///< there; empty unless by_source
-  double window_s{};           ///< the last part
+  double window_s{};           ///< the last part, s
   std::size_t fixes{0};        ///< used by the filter
-  bool settled{false};         ///< every sigma repeats to 0.1 % from one such part to the next
+  bool settled{false};  ///< every sigma repeats to 0.1 % from one repeating_part_s() to the next
   double settled_s{};          ///< since when; the scene's end where it has not settled
 };
 

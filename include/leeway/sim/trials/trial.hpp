@@ -1,6 +1,6 @@
 /// @file
-/// One nonlinear run of a scene: strapdown and EKF on simulated sensors, compared with the truth
-/// just before fixes are used, where the interval between them shows.
+/// One nonlinear run of a scene: its estimator on simulated sensors, compared with the truth just
+/// before fixes are used, where the interval between them shows.
 #pragma once
 
 #include <Eigen/Core>
@@ -59,7 +59,7 @@ struct TrialScore {
   std::int64_t beyond_r95{0};     ///< epochs with an error beyond the claimed R95 radius
   double largest_horizontal_m{};  ///< error
   /// A horizontal error beyond ten sigmas of the claim, which an honest filter makes once in 1e21
-  /// epochs; or not finite.
+  /// epochs; no solution when a fix that is scored arrives; or not finite.
   bool diverged{false};
   bool finite{true};  ///< and P positive; else the trial ended early and its sums are worth nothing
   std::int64_t fused{0};  ///< fixes of the whole run
@@ -74,8 +74,9 @@ struct TrialEpoch {
 };
 
 /// The score of one trial. The filter is told scene.filter and starts from its known biases, zero
-/// spread bias, and a start error drawn from initial_sigma(scene); the sensors are scene.imu. Same
-/// plan and seed, same bits.
+/// spread bias, and a start error drawn from initial_sigma(scene); the sensors are scene.imu. A
+/// navigator (scene.estimator) is told navigator_config(scene), and aligns by itself unless the
+/// scene has start errors; of it fused fixes are told as they arrive. Same plan and seed, same bits.
 /// @param observer  called before every fix, scored or not
 TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed,
                      const std::function<void(const TrialEpoch&)>& observer = {});
