@@ -11,6 +11,9 @@ namespace {
 // An IMU or a model that fails once in a quarter of an hour, against one fix in a hundred that is
 // wrong: the odds that a refusal is the filter's fault grow with the time since a fix confirmed it.
 constexpr double kOddsPerS = 0.1;
+// A filter whose velocity is right has not drifted away: where the position alone is refused, the
+// fixes before have been wrong for long, if not this one. That is rarer, once in some hours.
+constexpr double kPositionOddsPerS = 0.01;
 constexpr double kLowestOdds = 0.01;
 constexpr double kSigmas = 5.0;
 constexpr double kLongestMemoryS = 300.0;  // being right for longer proves no more
@@ -79,7 +82,7 @@ bool GateRecovery::continues_rival(const GnssFix& fix) const {
   return off_m <= 0.5 * gained_mps * dt_s + kSigmas * sigma_m;
 }
 
-double GateRecovery::odds_of(const GnssFix& fix) {
+double GateRecovery::odds_of(const GnssFix& fix, bool position_alone) {
   if (!refused_since_) refused_since_ = fix.time;
   if (!fix.position) return 0.0;
   if (!continues_rival(fix)) rival_since_ = fix.time;
@@ -89,7 +92,9 @@ double GateRecovery::odds_of(const GnssFix& fix) {
       std::min(to_seconds(good_time_.value_or(good_since_) - good_since_), kLongestMemoryS);
   const bool has_outlived = to_seconds(fix.time - *rival_since_) > good_s;
   if (!is_reachable(fix) && !has_outlived) return 0.0;
-  return has_outlived ? 1.0 : std::clamp(kOddsPerS * unconfirmed_s, kLowestOdds, 1.0);
+  if (has_outlived) return 1.0;
+  const double odds_per_s = position_alone ? kPositionOddsPerS : kOddsPerS;
+  return std::clamp(odds_per_s * unconfirmed_s, kLowestOdds, 1.0);
 }
 
 Ekf rival_of(const Ekf& filter, const GnssFix& fix, const UpdateOutcome& refusal,

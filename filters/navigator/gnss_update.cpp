@@ -126,7 +126,8 @@ Verdict NavigatorState::settle(const GnssFix& fix, bool is_explained) {
   // A fix that is refused alone, or that cannot be true, is an outlier: it says nothing of the
   // noise of the others, and its distance is not one that the estimate has drifted.
   const bool was_row = gate_recovery_.is_row();
-  const double odds = is_gated ? gate_recovery_.odds_of(fix) : 0.0;
+  const double odds =
+      is_gated ? gate_recovery_.odds_of(fix, refuses_position_alone(last_update_)) : 0.0;
   const bool is_outlier = is_gated && (!was_row || odds == 0.0);
   const bool differ_in_heading = bank_->count() > HeadingBank::kMaxRivals;
   if (differ_in_heading) {

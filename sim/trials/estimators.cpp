@@ -1,5 +1,7 @@
 #include "sim/trials/estimators.hpp"
 
+#include "leeway/covariance/covariance.hpp"
+#include "leeway/earth/earth.hpp"
 #include "sim/trials/trial_score.hpp"
 
 namespace leeway::sim {
@@ -73,12 +75,18 @@ void NavigatorUnderTest::arrive(bool scored, TrialScore& score) {
   if (was_aligned) add_outcome(score, navigator_.last_update(), scored);
 }
 
-/// The position is that of the solution, which is the mean of all headings that are possible; the
-/// rest is the likeliest filter's.
+/// The position and its sigmas are those of the solution, which speaks for all headings and rivals
+/// that are possible; the rest is the likeliest filter's.
 std::optional<TrialBelief> NavigatorUnderTest::belief() const {
   if (!navigator_.aligned()) return {};
+  const Solution solution = navigator_.solution();
   TrialBelief belief{navigator_.filter().estimate(), navigator_.filter().covariance()};
-  belief.estimate.nav = navigator_.solution().nav;
+  belief.estimate.nav = solution.nav;
+  const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(solution.nav.r_e_m)).transpose();
+  const Eigen::Vector3d own_sigma_n_m =
+      (C_ne * belief.P.block<3, 3>(kDr, kDr) * C_ne.transpose()).diagonal().cwiseSqrt();
+  const Eigen::Vector3d widening = solution.sigma_position_n_m.cwiseQuotient(own_sigma_n_m);
+  transform_block(belief.P, kDr, C_ne.transpose() * widening.asDiagonal() * C_ne);
   return belief;
 }
 

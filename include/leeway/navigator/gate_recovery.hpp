@@ -24,8 +24,9 @@ class GateRecovery {
   explicit GateRecovery(const VehicleLimits& limits) : limits_(limits) {}
 
   /// The gate has refused a fix.
+  /// @param position_alone  its velocity is the filter's, as refuses_position_alone()
   /// @returns odds of the fix to the filter, before later fixes are heard; 0: it cannot be true
-  double odds_of(const GnssFix& fix);
+  double odds_of(const GnssFix& fix, bool position_alone = false);
 
   /// A fix was fused.
   void fused(const GnssFix& fix, const Ekf& filter);
