@@ -84,7 +84,7 @@ class Analysis {
         window_s_(repeating_part_s(scene)),
         scored_s_(scored_part_s(scene)) {}
 
-  CovarianceAnalysis run() {
+  void walk() {
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
       const double arrival_s = t_s + scene_.gnss.latency_s;
       if (arrival_s > scene_.duration_s) break;
@@ -94,6 +94,10 @@ class Analysis {
       update();
     }
     if (config_.observer) advance(pair_, now_s_, scene_.duration_s);
+  }
+
+  CovarianceAnalysis run() {
+    walk();
     return finished();
   }
 
@@ -259,12 +263,30 @@ void free_inertial(const Scene& scene, const ErrorTrack& track,
   } while (observer(point) && point.t_s < scene.duration_s);
 }
 
-CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
-                           const CovarianceConfig& config) {
+namespace {
+
+/// Calls f with the analysis that fits what the scene's filter estimates.
+template <class F>
+auto with_analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config,
+                   F&& f) {
   validate(scene);
   const bool has_parameters = scene.vehicle && scene.vehicle->config.uses_parameters();
-  if (has_parameters) return Analysis<kVehicleStates>(scene, track, config).run();
-  return Analysis<0>(scene, track, config).run();
+  if (has_parameters) return f(Analysis<kVehicleStates>(scene, track, config));
+  return f(Analysis<0>(scene, track, config));
+}
+
+}  // namespace
+
+void follow(const Scene& scene, const ErrorTrack& track,
+            const std::function<void(const CovariancePoint&)>& observer) {
+  CovarianceConfig config;
+  config.observer = observer;
+  with_analysis(scene, track, config, [](auto analysis) { analysis.walk(); });
+}
+
+CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
+                           const CovarianceConfig& config) {
+  return with_analysis(scene, track, config, [](auto analysis) { return analysis.run(); });
 }
 
 }  // namespace leeway::sim

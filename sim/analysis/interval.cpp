@@ -11,7 +11,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kFirstGuessS = 10.0;
-constexpr double kBracketFactor = 10.0;
+constexpr double kBracketFactor = 1.41;
 constexpr int kMostSecants = 60;
 
 void validate(const Scene& scene, const std::vector<double>& limits_m,
@@ -99,25 +99,19 @@ class Solver {
     return {log_interval, std::log(known(log_interval).true_m)};
   }
 
-  /// Two neighbours with the limit between them, or both the same at an end of what is tried.
+  /// Two neighbours with the limit between them, or both the same at an end of what is tried. The
+  /// error may fall again where fixes come in step with the motion: every interval on the way to
+  /// the lower one keeps the limit, as far as the steps see it. They are the same for all limits.
   std::pair<Sample, Sample> bracket(double log_limit) {
     const double log_shortest = std::log(config_.shortest_s);
     const double factor = std::log(kBracketFactor);
     Sample below = sample(std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_));
     Sample above = below;
-    // What other limits have asked for is as good as a new guess.
-    for (const auto& [log_interval, analysis] : known_) {
-      if (const Sample s = sample(log_interval); s.log_error <= log_limit) below = s;
-    }
-    for (auto later = known_.rbegin(); later->first > below.log_interval; ++later) {
-      if (const Sample s = sample(later->first); s.log_error > log_limit) above = s;
-    }
     while (below.log_error > log_limit && below.log_interval > log_shortest) {
       above = below;
       below = sample(std::max(below.log_interval - factor, log_shortest));
     }
     if (below.log_error > log_limit) return {below, below};
-    if (above.log_interval < below.log_interval) above = below;
     while (above.log_error <= log_limit && above.log_interval < log_longest_) {
       below = above;
       above = sample(std::min(above.log_interval + factor, log_longest_));
@@ -134,7 +128,10 @@ class Solver {
       const double high = above_weight * (above.log_error - log_limit);
       const double width = above.log_interval - below.log_interval;
       if (width < config_.tolerance || -low < config_.tolerance * below_weight) break;
-      const Sample next = sample(below.log_interval - low * width / (high - low));
+      // Halves where the two errors tell no slope.
+      const double share = std::clamp(-low / (high - low), 0.0, 1.0);
+      const Sample next =
+          sample(below.log_interval + width * (std::isfinite(share) ? share : 0.5));
       if (next.log_error <= log_limit) {
         below = next;
         below_weight = 1.0;
@@ -153,6 +150,7 @@ class Solver {
     answer.true_m = analysis.true_m;
     answer.claimed_m = analysis.claimed_m;
     answer.settled = analysis.settled;
+    if (!config_.with_step_effect) return;
     // Fixes closer than half a step are the steps.
     if (std::exp(log_interval) <= 0.5 * config_.covariance_step_s) return;
     if (!fine_track_) fine_track_ = error_track(scene_, 0.5 * config_.covariance_step_s);

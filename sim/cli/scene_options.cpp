@@ -39,6 +39,8 @@ Json gnss_json(const sim::GnssScenario& gnss) {
   }
   const sim::GnssErrorModel& errors = gnss.errors;
   return {{"interval_s", gnss.interval_s},
+          {"settle_s", gnss.settle_s},
+          {"settle_interval_s", gnss.settle_interval_s},
           {"position_sigma_ned_m", json_of(errors.position_sigma_n_m)},
           {"velocity_sigma_ned_mps", json_of(errors.velocity_sigma_n_mps)},
           {"correlated_sigma_ned_m", json_of(errors.correlated_sigma_n_m)},
@@ -129,6 +131,8 @@ Json scene_json(const sim::Scene& scene) {
           {"motion", scene.trajectory.name},
           {"duration_s", scene.duration_s},
           {"imu_rate_hz", scene.imu_rate_hz},
+          {"estimator", name(scene.estimator)},
+          {"vehicle", scene.vehicle ? Json(name(scene.vehicle->config.kind)) : Json()},
           {"imu_model", scene.imu_name},
           {"bias_model", name(sim::bias_model_of(scene.imu))},
           {"gnss", gnss_json(scene.gnss)},

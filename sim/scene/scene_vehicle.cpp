@@ -1,6 +1,5 @@
 #include "leeway/sim/scene/scene_vehicle.hpp"
 
-#include "leeway/navigator/aidings.hpp"
 
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
@@ -57,22 +56,19 @@ SceneVehicle scene_vehicle(VehicleKind kind) {
 }
 
 SceneVehicle read_vehicle(TomlSection& section) {
-  constexpr VehicleSensor kOdometer{0.1, OdometerSpeed{}.sigma_mps};
-  constexpr VehicleSensor kBarometer{1.0, BarometricHeight{}.sigma_m};
-  constexpr VehicleSensor kHeading{1.0, MeasuredHeading{}.sigma_rad};
   SceneVehicle vehicle = scene_vehicle(section.required(section.choice<VehicleKind>("kind")));
   VehicleConfig& config = vehicle.config;
   read_constraints(section, config);
   vehicle.odometer =
-      read_sensor(section, "odometer", kSpeedNoise, kOdometer, [&config](TomlSection& odometer) {
+      read_sensor(section, "odometer", kSpeedNoise, kUsualOdometer, [&config](TomlSection& odometer) {
         set(odometer, kScaleSigma, config.odometer_scale_sigma);
       });
   vehicle.barometer =
-      read_sensor(section, "barometer", kHeightNoise, kBarometer, [&config](TomlSection& barometer) {
+      read_sensor(section, "barometer", kHeightNoise, kUsualBarometer, [&config](TomlSection& barometer) {
         set(barometer, kOffsetSigma, config.height_offset_sigma_m);
       });
   vehicle.heading =
-      read_sensor(section, "heading", kHeadingNoise, kHeading, [](TomlSection&) {});
+      read_sensor(section, "heading", kHeadingNoise, kUsualHeading, [](TomlSection&) {});
   config.odometer = vehicle.odometer.has_value();
   config.barometer = vehicle.barometer.has_value();
   config.heading = vehicle.heading.has_value();

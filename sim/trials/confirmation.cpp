@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 #include "leeway/model/chi_square.hpp"
+#include "leeway/model/horizontal.hpp"
+#include "leeway/sim/tools/parallel.hpp"
+#include "leeway/sim/trials/trial.hpp"
+#include "sim/trials/campaign_sums.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -20,15 +27,95 @@ bool within_band(double mean, int dof_each, std::int64_t trials) {
          mean * count < chi_square_threshold(0.5 * kRareProbability, dof);
 }
 
-/// A campaign at one interval, beside the linear analysis of the same fixes.
+/// What one trial leaves: its sums, and each error before a fix that counts, over the linear one.
+struct ScoredTrial {
+  TrialScore score{};
+  std::vector<double> over_linear{};
+};
+
+/// The linear analysis of a scene, and its error by the scene's metric before every fix.
+struct LinearRun {
+  CovarianceAnalysis analysis{};
+  std::vector<double> errors_m{};
+};
+
+LinearRun linear_run(const Scene& scene, const ErrorTrack& track) {
+  LinearRun run;
+  CovarianceConfig config;
+  config.observer = [&](const CovariancePoint& point) {
+    if (point.moment != CovariancePoint::Moment::kBeforeFix) return;
+    const auto P = horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
+    run.errors_m.push_back(horizontal_error_m(scene.limit.metric, P));
+  };
+  run.analysis = analyze(scene, track, config);
+  return run;
+}
+
+/// Of all trials but one; none is left out where `without` is none of them.
+double rms_over_linear(const std::vector<ScoredTrial>& trials, std::size_t without,
+                       double linear_drms_m) {
+  double sum_m2 = 0.0;
+  double epochs = 0.0;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (k == without || !trials[k].score.finite) continue;
+    sum_m2 += trials[k].score.error_sq_n_m2.head<2>().sum();
+    epochs += static_cast<double>(trials[k].score.epochs);
+  }
+  return std::sqrt(sum_m2 / epochs) / linear_drms_m;
+}
+
+double quantile_over_linear(const std::vector<ScoredTrial>& trials, std::size_t without,
+                            double probability) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    if (k == without) continue;
+    all.insert(all.end(), trials[k].over_linear.begin(), trials[k].over_linear.end());
+  }
+  if (all.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto at = static_cast<std::ptrdiff_t>(probability * static_cast<double>(all.size()));
+  std::nth_element(all.begin(), all.begin() + at, all.end());
+  return all[static_cast<std::size_t>(at)];
+}
+
+/// Trials at one interval, beside the linear analysis of the same fixes.
 struct TrialRun {
   CampaignResult campaign{};
   CovarianceAnalysis linear{};
+  double rms_over_true{};
+  double error_over_true{};
+  double scatter{};
 
-  double rms_over_true() const { return campaign.rms_horizontal_m / linear.true_drms_m; }
   /// By the scene's metric, at the worst fix.
-  double error_m() const { return linear.true_m * rms_over_true(); }
+  double error_m() const { return linear.true_m * error_over_true; }
+  bool diverges() const { return campaign.diverged > 0 || !std::isfinite(error_over_true); }
+
+  /// How many sigmas of its scatter the ratio is beyond kAgreement; below 0: within it.
+  double excess_sigmas() const {
+    const double excess = std::abs(std::log(error_over_true)) - std::log(kAgreement);
+    return excess / std::max(scatter, 1e-6);
+  }
 };
+
+/// Source of the scatter: the jackknife, Efron and Tibshirani (1993) (11.5).
+TrialRun summed(const std::vector<ScoredTrial>& trials, const CovarianceAnalysis& linear,
+                HorizontalMetric metric) {
+  TrialRun run{.linear = linear};
+  CampaignSums sums;
+  for (const ScoredTrial& trial : trials) sums.add(trial.score);
+  run.campaign = result_of(sums);
+  const std::size_t n = trials.size();
+  const auto ratio = [&](std::size_t without) {
+    return metric == HorizontalMetric::kR95 ? quantile_over_linear(trials, without, 0.95)
+                                            : rms_over_linear(trials, without, linear.true_drms_m);
+  };
+  run.rms_over_true = rms_over_linear(trials, n, linear.true_drms_m);
+  run.error_over_true = ratio(n);
+  double sum_sq = 0.0;
+  for (std::size_t k = 0; k < n; ++k) sum_sq += std::pow(ratio(k) - run.error_over_true, 2);
+  const auto count = static_cast<double>(n);
+  run.scatter = std::sqrt((count - 1.0) / count * sum_sq) / run.error_over_true;
+  return run;
+}
 
 class Confirmer {
  public:
@@ -36,27 +123,62 @@ class Confirmer {
       : scene_(scene), track_(track), progress_(std::move(progress)) {}
 
   Confirmation confirm(const Interval& answer) {
-    const TrialRun first = run(answer.interval_s);
-    Confirmation c;
-    c.campaign = first.campaign;
-    c.rms_over_true = first.rms_over_true();
-    c.consistent = c.campaign.diverged == 0 &&
-                   within_band(c.campaign.mean_nees, kErrorStates, scene_.trials) &&
-                   within_band(2.0 * c.rms_over_true * c.rms_over_true, 2, scene_.trials);
-    if (!c.consistent) c.interval_s = search(answer, first);
-    return c;
+    return judged(answer, run(answer.interval_s));
+  }
+
+  Confirmation check(const Interval& answer) {
+    scene_.trials = kFewestTrials;
+    TrialRun first = run(answer.interval_s);
+    while (!first.diverges() && std::abs(first.excess_sigmas()) < kClearSigmas &&
+           scene_.trials < kMostTrials) {
+      scene_.trials *= 2;
+      first = run(answer.interval_s);
+    }
+    return judged(answer, first);
   }
 
  private:
+  static constexpr double kClearSigmas = 2.0;
+
+  Confirmation judged(const Interval& answer, const TrialRun& first) {
+    Confirmation c;
+    c.campaign = first.campaign;
+    c.rms_over_true = first.rms_over_true;
+    c.error_over_true = first.error_over_true;
+    c.scatter = first.scatter;
+    c.agrees = !first.diverges() && first.excess_sigmas() < kClearSigmas;
+    c.consistent = c.campaign.diverged == 0 &&
+                   within_band(c.campaign.mean_nees, kErrorStates, scene_.trials) &&
+                   within_band(2.0 * c.rms_over_true * c.rms_over_true, 2, scene_.trials);
+    if (!c.agrees) c.interval_s = search(answer, first);
+    c.trials_run = trials_run_;
+    return c;
+  }
+
   TrialRun run(double interval_s) {
     scene_.gnss.interval_s = interval_s;
-    TrialRun r;
-    r.linear = analyze(scene_, track_);
-    CampaignOptions options;
-    options.score_last_s = r.linear.window_s;
-    options.progress = [this](const CampaignProgress& p) { progress_(p.fraction); };
-    r.campaign = campaign(scene_, options);
-    return r;
+    const LinearRun linear = linear_run(scene_, track_);
+    const TrialPlan plan(scene_, linear.analysis.window_s);
+    std::vector<ScoredTrial> trials(static_cast<std::size_t>(scene_.trials));
+    parallel_for(
+        trials.size(), [&](std::size_t k) { trials[k] = scored(plan, linear, k); },
+        [&](std::size_t done) {
+          progress_(static_cast<double>(done) / static_cast<double>(trials.size()));
+        },
+        0);
+    trials_run_ += scene_.trials;
+    return summed(trials, linear.analysis, scene_.limit.metric);
+  }
+
+  ScoredTrial scored(const TrialPlan& plan, const LinearRun& linear, std::size_t k) const {
+    ScoredTrial trial;
+    std::size_t fix = 0;
+    trial.score = run_trial(plan, scene_.first_seed + k, [&](const TrialEpoch& epoch) {
+      const std::size_t i = fix++;
+      if (i >= linear.errors_m.size() || !plan.fixes()[i].scored) return;
+      trial.over_linear.push_back(epoch.error_h_m / linear.errors_m[i]);
+    });
+    return trial;
   }
 
   /// Secants in log(error) over log(interval) between an interval that keeps the limit and one that
@@ -68,7 +190,7 @@ class Confirmer {
     double slope = 1.0;
     for (int i = 0; i < kMostSearches; ++i) {
       const double excess = std::log(here.error_m() / answer.limit_m);
-      const bool diverges = here.campaign.diverged > 0 || !std::isfinite(excess);
+      const bool diverges = here.diverges();
       if (!diverges && std::abs(excess) < kSearchTolerance) return std::exp(log_s);
       (diverges || excess > 0.0 ? lost : kept) = log_s;
       // Of an error that is that of lost filters no secant can be drawn.
@@ -87,6 +209,7 @@ class Confirmer {
   Scene scene_;
   const ErrorTrack& track_;
   std::function<void(double)> progress_;
+  int trials_run_{0};
 };
 
 }  // namespace
@@ -94,6 +217,11 @@ class Confirmer {
 Confirmation confirm(const Scene& scene, const ErrorTrack& track, const Interval& answer,
                      const std::function<void(double fraction)>& progress) {
   return Confirmer(scene, track, progress).confirm(answer);
+}
+
+Confirmation check(const Scene& scene, const ErrorTrack& track, const Interval& answer,
+                   const std::function<void(double fraction)>& progress) {
+  return Confirmer(scene, track, progress).check(answer);
 }
 
 }  // namespace leeway::sim

@@ -105,8 +105,12 @@ class Trial {
 
   void tell() {
     const std::optional<TrialBelief> belief = estimator_.at_fix();
-    if (!belief) return;
     const double t_s = to_seconds(now_);
+    if (!belief) {
+      constexpr double kUnknown = std::numeric_limits<double>::infinity();
+      observer_({t_s, kUnknown, kUnknown});
+      return;
+    }
     const Estimate truth{truth_at(plan_.scene().trajectory, t_s).nav, {}};
     const Eigen::Matrix2d P_ne_m2 =
         horizontal_covariance(belief->estimate.nav.r_e_m, belief->P.block<3, 3>(kDr, kDr));

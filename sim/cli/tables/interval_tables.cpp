@@ -19,6 +19,19 @@ std::string calibrated(const sim::Interval& answer) {
   return (is_longer ? "> " : "") + seconds(answer.interval_s);
 }
 
+/// With its mark: l linear, c checked, t by trials.
+std::string marked(const SolvedLimit& answer) {
+  switch (answer.mark()) {
+    case sim::Mark::kLinear:
+      return calibrated(answer.interval) + " l";
+    case sim::Mark::kChecked:
+      return calibrated(answer.interval) + " c";
+    case sim::Mark::kByTrials:
+      return (std::isnan(answer.interval_s()) ? "none" : seconds(answer.interval_s())) + " t";
+  }
+  return {};
+}
+
 std::string free_inertial(const sim::Interval& answer, double duration_s) {
   return std::isnan(answer.free_inertial_s) ? "> " + seconds(duration_s)
                                             : seconds(answer.free_inertial_s);
@@ -26,18 +39,23 @@ std::string free_inertial(const sim::Interval& answer, double duration_s) {
 
 void print_answers(const std::vector<SolvedImu>& solved) {
   std::vector<std::string> headings{"<IMU"};
-  for (const sim::Interval& answer : solved.front().intervals) {
-    headings.push_back(fmt::format("{:g} m", answer.limit_m));
+  for (const SolvedLimit& answer : solved.front().limits) {
+    headings.push_back(fmt::format("{:g} m", answer.interval.limit_m));
   }
   Table table(headings);
   for (const SolvedImu& imu : solved) {
     std::vector<std::string> cells{imu.scene.imu_name};
-    for (const sim::Interval& answer : imu.intervals) {
-      cells.push_back(free_inertial(answer, imu.scene.duration_s) + " / " + calibrated(answer));
+    for (const SolvedLimit& answer : imu.limits) {
+      cells.push_back(free_inertial(answer.interval, imu.scene.duration_s) + " / " +
+                      marked(answer));
     }
     table.add(std::move(cells));
   }
   table.print();
+  fmt::print(
+      "  l: linear analysis alone; c: checked, trials of the {} err the same within {:.0f} %;\n"
+      "  t: by trials, which err otherwise\n",
+      name(solved.front().scene.estimator), 100.0 * (sim::kAgreement - 1.0));
 }
 
 /// How often, in the words of the paper's conclusion.
@@ -50,19 +68,22 @@ std::string how_often(double interval_s) {
 /// The paper's conclusion, answered at its own error of 100 m or the largest limit asked for.
 void print_conclusion(const std::vector<SolvedImu>& solved) {
   const auto largest = [](const SolvedImu& imu) {
-    return *std::max_element(imu.intervals.begin(), imu.intervals.end(),
-                             [](const auto& a, const auto& b) { return a.limit_m < b.limit_m; });
+    return *std::max_element(imu.limits.begin(), imu.limits.end(),
+                             [](const SolvedLimit& a, const SolvedLimit& b) {
+                               return a.interval.limit_m < b.interval.limit_m;
+                             });
   };
   fmt::print("\nHow often a fix is needed to stay within {:g} m\n",
-             largest(solved.front()).limit_m);
+             largest(solved.front()).interval.limit_m);
   Table table({"<IMU", "<without calibration", "<calibrated by the fixes"});
   for (const SolvedImu& imu : solved) {
-    const sim::Interval answer = largest(imu);
+    const SolvedLimit answer = largest(imu);
     table.add({imu.scene.imu_name,
-               std::isnan(answer.free_inertial_s) ? "never within the scene"
-                                                  : how_often(answer.free_inertial_s),
-               std::isnan(answer.interval_s) ? "no interval is short enough"
-                                             : how_often(answer.interval_s)});
+               std::isnan(answer.interval.free_inertial_s)
+                   ? "never within the scene"
+                   : how_often(answer.interval.free_inertial_s),
+               std::isnan(answer.interval_s()) ? "no interval is short enough"
+                                               : how_often(answer.interval_s())});
   }
   table.print();
 }
@@ -74,7 +95,8 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
   bool any = false;
   double pessimism = 1.0;
   for (const SolvedImu& imu : solved) {
-    for (const sim::Interval& a : imu.intervals) {
+    for (const SolvedLimit& answer : imu.limits) {
+      const sim::Interval& a = answer.interval;
       const double ratio = a.true_m / a.claimed_m;
       pessimism = std::max(pessimism, 1.0 / ratio);
       if (ratio < kWorthSaying) continue;
@@ -94,31 +116,71 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
 }
 
 std::string verdict(const sim::Confirmation& c) {
-  if (c.consistent) return "consistent";
-  const std::string by_monte_carlo =
-      c.interval_s ? seconds(*c.interval_s) + " s" : std::string("no interval found");
-  return "FILTER INCONSISTENT; by Monte Carlo " + by_monte_carlo;
+  if (!c.agrees) {
+    return "trials contradict: " +
+           (c.interval_s ? seconds(*c.interval_s) + " s" : std::string("no interval found"));
+  }
+  return c.consistent ? "agree" : "agree; the filter claims otherwise";
 }
 
 void print_confirmations(const std::vector<SolvedImu>& solved) {
-  if (solved.front().confirmations.empty()) return;
-  fmt::print("\nMonte Carlo of the whole filter at these intervals\n");
-  Table table({"<IMU", "limit, m", "interval, s", "trials", "RMS / sigma", "RMS / true", "NEES",
+  Table table({"<IMU", "limit, m", "linear, s", "trials", "error / linear", "+-", "RMS / sigma", "NEES",
                "95 % band", "diverged", "<verdict"});
+  bool any = false;
   for (const SolvedImu& imu : solved) {
-    for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
-      if (!imu.confirmations[i]) continue;
-      const sim::Confirmation& c = *imu.confirmations[i];
+    for (const SolvedLimit& answer : imu.limits) {
+      if (!answer.confirmation) continue;
+      any = true;
+      const sim::Confirmation& c = *answer.confirmation;
       const sim::CampaignResult& r = c.campaign;
-      table.add({imu.scene.imu_name, fmt::format("{:g}", imu.intervals[i].limit_m),
-                 seconds(imu.intervals[i].interval_s), std::to_string(r.trials),
-                 number(r.rms_over_sigma, 3), number(c.rms_over_true, 3), number(r.mean_nees, 2),
+      table.add({imu.scene.imu_name, fmt::format("{:g}", answer.interval.limit_m),
+                 seconds(answer.interval.interval_s), std::to_string(r.trials),
+                 number(c.error_over_true, 3), number(c.scatter, 3), number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
                  fmt::format("{:.2f} to {:.2f}", r.nees_low, r.nees_high),
                  std::to_string(r.diverged), verdict(c)},
-                c.consistent ? Tone::kGood : Tone::kBad);
+                c.agrees ? Tone::kGood : Tone::kBad);
+    }
+  }
+  if (any) {
+    fmt::print("\nTrials of the {} at these intervals\n", name(solved.front().scene.estimator));
+    table.print();
+  }
+  for (const SolvedImu& imu : solved) {
+    for (const SolvedLimit& answer : imu.limits) {
+      if (answer.failure.empty()) continue;
+      fmt::print("  {} at {:g} m could not be tried: {}\n", imu.scene.imu_name,
+                 answer.interval.limit_m, answer.failure);
+    }
+  }
+}
+
+/// What each sensor and constraint of the vehicle buys.
+void print_aiding(const SolvedImu& imu) {
+  if (imu.aided.empty()) return;
+  fmt::print("\nWhat the vehicle tells beside its receiver, {} at {:g} m, linear\n",
+             imu.scene.imu_name, imu.scene.limit.limit_m);
+  Table table({"<aiding", "interval, s", "<"});
+  for (const AidedInterval& aided : imu.aided) {
+    table.add({aided.aiding, calibrated(aided.interval), aided.is_the_scenes ? "the scene's" : ""});
+  }
+  table.print();
+}
+
+/// Outages that the scene scripts.
+void print_coasts(const std::vector<SolvedImu>& solved) {
+  Table table({"<IMU", "outage at, s", "for, s", "error at its end, m", "limit, m", "<keeps it",
+               "coast time, s"});
+  for (const SolvedImu& imu : solved) {
+    for (const sim::Coast& c : imu.coasts) {
+      table.add({imu.scene.imu_name, number(c.outage.start_s, 1), number(c.outage.duration_s, 1),
+                 number(c.end_error_m, 2), fmt::format("{:g}", c.limit_m),
+                 c.keeps_limit() ? "yes" : fmt::format("no, at {:.1f} s", c.end_s),
+                 std::isnan(c.coast_s) ? "to the scene's end" : seconds(c.coast_s)},
+                c.keeps_limit() ? Tone::kGood : Tone::kBad);
     }
   }
   table.print();
+  fmt::print("  Coast time: how long without fixes until the limit, from the outage's start.\n");
 }
 
 void print_how(const std::vector<SolvedImu>& solved) {
@@ -126,9 +188,9 @@ void print_how(const std::vector<SolvedImu>& solved) {
   std::size_t settled = 0;
   std::size_t all = 0;
   for (const SolvedImu& imu : solved) {
-    for (const sim::Interval& answer : imu.intervals) {
-      step_effect = std::max(step_effect, answer.step_effect);
-      settled += answer.settled ? 1U : 0U;
+    for (const SolvedLimit& answer : imu.limits) {
+      step_effect = std::max(step_effect, answer.interval.step_effect);
+      settled += answer.interval.settled ? 1U : 0U;
       ++all;
     }
   }
@@ -155,24 +217,95 @@ Json confirm_json(const sim::Confirmation& c) {
   return {{"trials", r.trials},
           {"rms_over_sigma", r.rms_over_sigma},
           {"rms_over_true", c.rms_over_true},
+          {"error_over_true", c.error_over_true},
+          {"scatter", c.scatter},
           {"nees", r.mean_nees},
           {"nees_low", r.nees_low},
           {"nees_high", r.nees_high},
           {"diverged", r.diverged},
+          {"agrees", c.agrees},
           {"monte_carlo_interval_s", c.interval_s ? Json(*c.interval_s) : Json()}};
 }
 
+Json coasts_json(const SolvedImu& imu) {
+  Json rows = Json::array();
+  for (const sim::Coast& c : imu.coasts) {
+    Json row = imu_json(imu.scene.imu_name);
+    row["start_s"] = c.outage.start_s;
+    row["duration_s"] = c.outage.duration_s;
+    row["end_s"] = c.end_s;
+    row["end_error_m"] = c.end_error_m;
+    row["metric"] = name(imu.scene.limit.metric);
+    row["limit_m"] = c.limit_m;
+    row["keeps_limit"] = c.keeps_limit();
+    row["coast_s"] = c.coast_s;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Json limit_json(const SolvedImu& imu, const SolvedLimit& answer) {
+  const sim::Interval& a = answer.interval;
+  const bool has_trials = answer.confirmation.has_value();
+  Json row = imu_json(imu.scene.imu_name);
+  row["motion"] = imu.scene.trajectory.name;
+  row["bias_model"] = name(sim::bias_model_of(imu.scene.imu));
+  row["metric"] = name(imu.scene.limit.metric);
+  row["limit_m"] = a.limit_m;
+  row["interval_s"] = a.interval_s;
+  row["mark"] = name(answer.mark());
+  row["answer_s"] = answer.interval_s();
+  row["free_inertial_s"] = a.free_inertial_s;
+  row["consistent"] = has_trials ? Json(answer.confirmation->consistent) : Json();
+  row["confirm"] = has_trials ? confirm_json(*answer.confirmation) : Json();
+  row["not_tried"] = answer.failure.empty() ? Json() : Json(answer.failure);
+  row["outcome"] = name(a.outcome);
+  row["error_m"] = a.true_m;
+  row["claimed_error_m"] = a.claimed_m;
+  row["settled"] = a.settled;
+  row["covariance_step_effect"] = a.step_effect;
+  return row;
+}
+
+Json aided_json(const SolvedImu& imu) {
+  Json rows = Json::array();
+  for (const AidedInterval& aided : imu.aided) {
+    rows.push_back({{"aiding", aided.aiding},
+                    {"is_the_scenes", aided.is_the_scenes},
+                    {"imu", imu.scene.imu_name},
+                    {"limit_m", aided.interval.limit_m},
+                    {"interval_s", aided.interval.interval_s}});
+  }
+  return rows;
+}
+
 }  // namespace
+
+double SolvedLimit::interval_s() const {
+  if (mark() != sim::Mark::kByTrials) return interval.interval_s;
+  return confirmation->interval_s.value_or(std::numeric_limits<double>::quiet_NaN());
+}
 
 void print_interval_tables(const std::vector<SolvedImu>& solved) {
   const sim::Scene& scene = solved.front().scene;
   fmt::print("Scene '{}' ({}), evaluated after {:g} s\n", scene.name, scene.trajectory.name,
              scene.duration_s);
+  if (scene.gnss.settle_s > 0.0) {
+    fmt::print("Fixes every {:g} s for the first {:g} s, then at the interval; every error after "
+               "that counts\n",
+               scene.gnss.settle_interval_s, scene.gnss.settle_s);
+  }
+  if (solved.front().limits.empty()) {
+    fmt::print("The scene has outages: the error ({}) at their ends, with fixes every {:g} s else\n",
+               name(scene.limit.metric), scene.gnss.interval_s);
+    return print_coasts(solved);
+  }
   fmt::print(
       "Time without fixes from a perfect start / longest time between fixes, s, for a horizontal "
       "error ({}) below\n",
       name(scene.limit.metric));
   print_answers(solved);
+  for (const SolvedImu& imu : solved) print_aiding(imu);
   print_conclusion(solved);
   print_optimism(solved);
   print_confirmations(solved);
@@ -181,30 +314,19 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
 
 Json interval_json(const std::vector<SolvedImu>& solved) {
   Json results = Json::array();
+  Json coasts = Json::array();
+  Json aided = Json::array();
   for (const SolvedImu& imu : solved) {
-    for (std::size_t i = 0; i < imu.intervals.size(); ++i) {
-      const sim::Interval& a = imu.intervals[i];
-      const bool asked = !imu.confirmations.empty() && imu.confirmations[i];
-      Json row = imu_json(imu.scene.imu_name);
-      row["motion"] = imu.scene.trajectory.name;
-      row["bias_model"] = name(sim::bias_model_of(imu.scene.imu));
-      row["metric"] = name(imu.scene.limit.metric);
-      row["limit_m"] = a.limit_m;
-      row["interval_s"] = a.interval_s;
-      row["free_inertial_s"] = a.free_inertial_s;
-      row["consistent"] = asked ? Json(imu.confirmations[i]->consistent) : Json();
-      row["confirm"] = asked ? confirm_json(*imu.confirmations[i]) : Json();
-      row["outcome"] = name(a.outcome);
-      row["error_m"] = a.true_m;
-      row["claimed_error_m"] = a.claimed_m;
-      row["settled"] = a.settled;
-      row["covariance_step_effect"] = a.step_effect;
-      results.push_back(std::move(row));
-    }
+    for (const SolvedLimit& answer : imu.limits) results.push_back(limit_json(imu, answer));
+    for (const Json& row : coasts_json(imu)) coasts.push_back(row);
+    for (const Json& row : aided_json(imu)) aided.push_back(row);
   }
   Json input = scene_json(solved.front().scene);
   for (const char* varies : {"imu_model", "bias_model", "limit_m"}) input.erase(varies);
-  return answer_json("interval", std::move(input), std::move(results));
+  Json answer = answer_json("interval", std::move(input), std::move(results));
+  if (!coasts.empty()) answer["outages"] = std::move(coasts);
+  if (!aided.empty()) answer["aiding"] = std::move(aided);
+  return answer;
 }
 
 }  // namespace leeway::cli

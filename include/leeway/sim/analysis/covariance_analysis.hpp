@@ -117,6 +117,11 @@ ErrorTrack error_track(const Scene& scene, double step_s = 1.0);
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
                            const CovarianceConfig& config = {});
 
+/// The covariances at every moment of a scene, which need not have a fix that counts.
+/// @throws Error when the scene is invalid.
+void follow(const Scene& scene, const ErrorTrack& track,
+            const std::function<void(const CovariancePoint&)>& observer);
+
 /// The error that grows without any fix from a start without error in attitude, velocity and
 /// position; the sensors have theirs.
 /// @param observer  called at every step of the track until it returns false or the scene ends

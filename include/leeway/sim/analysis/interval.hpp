@@ -18,6 +18,7 @@ struct IntervalConfig {
   double shortest_s{0.1};  ///< intervals from here to half the scene are tried
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
   double covariance_step_s{1.0};
+  bool with_step_effect{true};  ///< whether Interval::step_effect is wanted
   /// Called with every interval that is analysed on the way, in no order.
   std::function<void(double interval_s, const CovarianceAnalysis&)> observer{};
   /// Called on the way to free_inertial_s, with the error by the scene's metric.

@@ -22,6 +22,11 @@ struct VehicleSensor {
   }
 };
 
+/// Sensors as a scene has them that says no more than that they are there.
+inline constexpr VehicleSensor kUsualOdometer{0.1, 0.1};
+inline constexpr VehicleSensor kUsualBarometer{1.0, 0.5};
+inline constexpr VehicleSensor kUsualHeading{1.0, 0.035};
+
 /// A vehicle. Its motion is the trajectory's, without side slip: the point that never slides is the
 /// IMU's own, which is why rear_axle_x_m is 0 here unless a scene says otherwise.
 struct SceneVehicle {

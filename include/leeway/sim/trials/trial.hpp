@@ -69,7 +69,7 @@ struct TrialScore {
 /// A moment just before a fix is used, at the fix's own time whatever the latency.
 struct TrialEpoch {
   double t_s{};
-  double error_h_m{};
+  double error_h_m{};      ///< infinite, as the claim, where there is no solution yet
   double claimed_r95_m{};  ///< the radius that 95 % of such errors stay within, says the filter
 };
 
