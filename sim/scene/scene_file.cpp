@@ -41,7 +41,9 @@ class SceneReader {
     root.table("gnss", [this](TomlSection& section) {
       scene_.gnss = read_gnss(section, scene_.duration_s, wanted_duration_s_.has_value());
       settle_s_ = section.number(kSettle);
-      set(section, kSettleInterval, scene_.gnss.settle_interval_s);
+      GnssScenario& gnss = scene_.gnss;
+      gnss.settle_interval_s = std::min(gnss.settle_interval_s, gnss.interval_s);
+      set(section, kSettleInterval, gnss.settle_interval_s);
       require_step(section);
     });
     root.table("vehicle", [this](TomlSection& section) { scene_.vehicle = read_vehicle(section); });
