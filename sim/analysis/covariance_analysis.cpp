@@ -14,6 +14,8 @@
 #include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
+#include "sim/analysis/end_analysis.hpp"
+#include "sim/analysis/repeated_fixes.hpp"
 #include "sim/analysis/scene_covariance.hpp"
 
 namespace leeway::sim {
@@ -23,6 +25,7 @@ using Moment = CovariancePoint::Moment;
 using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then true
 
 constexpr double kSettledRelative = 1e-3;
+constexpr double kSamePhase = 1e-6;
 
 // As the navigator's motion_hides_heading().
 constexpr double kEvenS = 10.0;
@@ -75,23 +78,33 @@ struct Score {
 template <int kParameters>
 class Analysis {
  public:
-  Analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config)
+  /// @param stretches  of the track, when only the scene's end matters
+  Analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config,
+           Stretches* stretches = nullptr)
       : scene_(scene),
         track_(track),
+        stretches_(stretches),
         config_(config),
         correlation_s_(believed_correlation_s(scene)),
         pair_(scene, config.by_source),
         window_s_(repeating_part_s(scene)),
-        scored_s_(scored_part_s(scene)) {}
+        scored_s_(scored_part_s(scene)) {
+    if (!pair_.takes_stretches()) stretches_ = nullptr;
+  }
 
   void walk() {
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
+      if (t_s < repeated_until_s_) {
+        ++fixes_;
+        continue;
+      }
       const double arrival_s = t_s + scene_.gnss.latency_s;
       if (arrival_s > scene_.duration_s) break;
       now_s_ = advance(pair_, now_s_, t_s);
       enter_window(arrival_s);
       score(arrival_s);
       update();
+      if constexpr (kParameters == 0) repeat();
     }
     if (config_.observer) advance(pair_, now_s_, scene_.duration_s);
   }
@@ -103,6 +116,12 @@ class Analysis {
 
  private:
   double advance(SceneCovariance<kParameters>& pair, double from_s, double to_s) const {
+    if constexpr (kParameters == 0) {
+      if (stretches_ != nullptr) {
+        stretches_->follow(from_s, to_s, [&](const auto& part) { pair.propagate(part); });
+        return to_s;
+      }
+    }
     const bool is_watched = &pair == &pair_ && config_.observer;
     track_.follow(from_s, to_s, [&](const Leg& leg) {
       pair.propagate(leg);
@@ -209,6 +228,28 @@ class Analysis {
     if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
   }
 
+  /// Goes from the fix of now over those that need not be followed one by one, where there are such.
+  void repeat() {
+    const double interval_s = scene_.gnss.interval_s;
+    const bool begins = now_s_ > scene_.gnss.settle_s && !has_tried_to_repeat_;
+    if (stretches_ == nullptr || !begins) return;
+    has_tried_to_repeat_ = true;
+    const bool never_holds = scene_.estimator == SceneEstimator::kEkf;
+    if (!never_holds || !scene_.gnss.outages.empty()) return;
+    // What was moved or has not settled yet has two parts more to be forgotten in.
+    const double followed_s = std::max(scored_s_, 2.0 * window_s_);
+    const FixSpan span{now_s_, scene_.duration_s - scene_.gnss.latency_s - followed_s, interval_s,
+                       gnss_position_weight(interval_s, correlation_s_)};
+    const auto pattern = fix_pattern(scene_, track_, span);
+    if (!pattern) return;
+    now_s_ = repeat_fixes(pair_, scene_, *stretches_, span, *pattern);
+    const double fixes = std::floor((now_s_ - span.from_s) / interval_s + kSamePhase);
+    last_fix_s_ = span.from_s + fixes * interval_s;
+    repeated_until_s_ = last_fix_s_ + 0.5 * interval_s;
+    window_ = Window{};
+    previous_.reset();
+  }
+
   /// What the navigator does not let a fix tell: the heading at rest, or after a while of even motion.
   Held held_at(double since_s) const {
     if (scene_.estimator != SceneEstimator::kNavigator) return Held::kNothing;
@@ -221,6 +262,7 @@ class Analysis {
 
   const Scene& scene_;
   const ErrorTrack& track_;
+  Stretches* stretches_;
   const CovarianceConfig& config_;
   double correlation_s_;
   SceneCovariance<kParameters> pair_;
@@ -228,6 +270,8 @@ class Analysis {
   double scored_s_;
   double now_s_{0.0};
   double last_fix_s_{-std::numeric_limits<double>::infinity()};  // the first fix has weight 1
+  double repeated_until_s_{0.0};
+  bool has_tried_to_repeat_{false};
   std::size_t fixes_{0};
   Window window_{};
   Score score_{};
@@ -287,6 +331,13 @@ void follow(const Scene& scene, const ErrorTrack& track,
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
                            const CovarianceConfig& config) {
   return with_analysis(scene, track, config, [](auto analysis) { return analysis.run(); });
+}
+
+CovarianceAnalysis analyze_end(const Scene& scene, Stretches& stretches) {
+  const bool has_parameters = scene.vehicle && scene.vehicle->config.uses_parameters();
+  if (has_parameters) return analyze(scene, stretches.track());
+  validate(scene);
+  return Analysis<0>(scene, stretches.track(), {}, &stretches).run();
 }
 
 }  // namespace leeway::sim

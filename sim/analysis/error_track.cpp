@@ -26,7 +26,115 @@ ParameterMatrix parameter_input(const Eigen::Matrix3d& C_eb, const Eigen::Vector
   return input;
 }
 
+Eigen::Vector3d acceleration_e(const TruthPoint& truth) {
+  return truth.nav.q_eb * truth.f_ib_b_mps2 +
+         gravity_e(GravityModel::kNormal, truth.nav.r_e_m);
+}
+
+/// Whether one truth may stand for a stretch of time.
+bool is_steady(const TruthPoint& start, const TruthPoint& middle, const TruthPoint& end,
+               double dt_s) {
+  constexpr double kTurnRad = 1e-4;
+  constexpr double kRateRadps = 1e-5;
+  constexpr double kForceMps2 = 1e-3;
+  const auto differ = [](const auto& a, const auto& b, double by) { return (a - b).norm() > by; };
+  if (differ(start.omega_ib_b_radps, middle.omega_ib_b_radps, kRateRadps)) return false;
+  if (differ(end.omega_ib_b_radps, middle.omega_ib_b_radps, kRateRadps)) return false;
+  if (differ(start.f_ib_b_mps2, middle.f_ib_b_mps2, kForceMps2)) return false;
+  if (differ(end.f_ib_b_mps2, middle.f_ib_b_mps2, kForceMps2)) return false;
+  if (start.nav.q_eb.angularDistance(end.nav.q_eb) > kTurnRad) return false;
+  // Nothing has happened between the three that they do not show.
+  const Eigen::Vector3d coriolis = 2.0 * earth_rotation_e_radps().cross(middle.nav.v_e_mps);
+  const Eigen::Vector3d expected = start.nav.v_e_mps + dt_s * (acceleration_e(middle) - coriolis);
+  return !differ(end.nav.v_e_mps, expected, dt_s * kForceMps2);
+}
+
 }  // namespace
+
+/// The truth of a trajectory, taken as densely as it changes.
+class ErrorTrack::Sampler {
+ public:
+  Sampler(ErrorTrack& track, const Trajectory& trajectory, std::size_t steps)
+      : track_(track), trajectory_(trajectory), steps_(steps), start_(truth_at(trajectory, 0.0)) {}
+
+  void sample() {
+    while (step_ < steps_) {
+      const std::size_t first_piece = track_.pieces_.size();
+      std::size_t legs = std::min(2 * legs_, std::min(kMostLegs, steps_ - step_));
+      while (legs > 1 && !add_steady(legs)) legs /= 2;
+      if (legs == 1 && !add_steady(1)) add_moving();
+      track_.add_run(legs, first_piece);
+      step_ += legs;
+      legs_ = legs;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMostLegs = 64;
+
+  double time_s(double step) const { return step * track_.step_s_; }
+
+  /// One piece for some legs in a row. @returns false, and changes nothing, where they differ.
+  bool add_steady(std::size_t legs) {
+    const auto begin = static_cast<double>(step_);
+    const auto count = static_cast<double>(legs);
+    const TruthPoint end = truth_at(trajectory_, time_s(begin + count));
+    const TruthPoint middle = truth_at(trajectory_, time_s(begin + 0.5 * count));
+    if (!is_steady(start_, middle, end, time_s(count))) return false;
+    if (legs > 1 && !mean_has_come_to(middle)) return false;
+    MeanMotion of_leg;
+    for (int i = 0; i < kPiecesPerStep; ++i) {
+      let_mean_follow(middle);
+      of_leg.omega_ib_b_radps += mean_.omega_ib_b_radps / kPiecesPerStep;
+      of_leg.acceleration_e_mps2 += mean_.acceleration_e_mps2 / kPiecesPerStep;
+    }
+    pieces_before_ += (legs - 1) * kPiecesPerStep;
+    add_piece(middle, of_leg);
+    start_ = end;
+    return true;
+  }
+
+  void add_moving() {
+    for (int i = 0; i < kPiecesPerStep; ++i) {
+      const double at = static_cast<double>(step_) + (i + 0.5) / kPiecesPerStep;
+      const TruthPoint truth = truth_at(trajectory_, time_s(at));
+      let_mean_follow(truth);
+      add_piece(truth, mean_);
+    }
+    start_ = truth_at(trajectory_, time_s(static_cast<double>(step_ + 1)));
+  }
+
+  void add_piece(const TruthPoint& truth, const MeanMotion& motion) {
+    track_.pieces_.push_back({truth.nav.q_eb.toRotationMatrix(),
+                              gravity_gradient_e(truth.nav.r_e_m), truth.f_ib_b_mps2,
+                              truth.omega_ib_b_radps, motion});
+  }
+
+  void let_mean_follow(const TruthPoint& truth) {
+    const double piece_s = track_.piece_s_;
+    const double window_s =
+        std::clamp(static_cast<double>(++pieces_before_) * piece_s, piece_s,
+                   std::max(InertialEstimate::kMeanRateS, piece_s));
+    const double share = piece_s / window_s;
+    mean_.omega_ib_b_radps += share * (truth.omega_ib_b_radps - mean_.omega_ib_b_radps);
+    mean_.acceleration_e_mps2 += share * (acceleration_e(truth) - mean_.acceleration_e_mps2);
+  }
+
+  /// Whether the filter's mean of the motion is that of now.
+  bool mean_has_come_to(const TruthPoint& now) const {
+    return (mean_.omega_ib_b_radps - now.omega_ib_b_radps).norm() < 1e-5 &&
+           (mean_.acceleration_e_mps2 - acceleration_e(now)).norm() < 1e-3;
+  }
+
+  ErrorTrack& track_;
+  const Trajectory& trajectory_;
+  std::size_t steps_;
+  TruthPoint start_;  // of the step
+  std::size_t step_{0};
+  std::size_t legs_{1};  // of the last run
+  std::size_t pieces_before_{0};
+  MeanMotion mean_{};
+};
 
 ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
                        const ErrorTrackConfig& config)
@@ -38,47 +146,48 @@ ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
   const auto steps = static_cast<std::size_t>(std::ceil(span_s / config.step_s - kSlack));
   step_s_ = span_s / static_cast<double>(steps);
   piece_s_ = step_s_ / kPiecesPerStep;
-  pieces_.reserve(steps * kPiecesPerStep);
-  MeanMotion mean;
-  for (std::size_t k = 0; k < steps * kPiecesPerStep; ++k) {
-    const TruthPoint truth = truth_at(trajectory, (static_cast<double>(k) + 0.5) * piece_s_);
-    const double window_s = std::max(
-        std::min(static_cast<double>(k + 1) * piece_s_, InertialEstimate::kMeanRateS), piece_s_);
-    const Eigen::Vector3d acceleration_e_mps2 =
-        truth.nav.q_eb * truth.f_ib_b_mps2 + gravity_e(GravityModel::kNormal, truth.nav.r_e_m);
-    mean.omega_ib_b_radps += piece_s_ / window_s * (truth.omega_ib_b_radps - mean.omega_ib_b_radps);
-    mean.acceleration_e_mps2 +=
-        piece_s_ / window_s * (acceleration_e_mps2 - mean.acceleration_e_mps2);
-    pieces_.push_back({truth.nav.q_eb.toRotationMatrix(), gravity_gradient_e(truth.nav.r_e_m),
-                       truth.f_ib_b_mps2, truth.omega_ib_b_radps, mean});
-  }
-  Phi_.reserve(steps);
-  for (std::size_t step = 0; step < steps; ++step) {
-    const Leg whole = part(step, 0.0, step_s_);
-    Phi_.push_back(whole.Phi);
-    motion_.push_back(whole.motion);
-    if (config_.parameters) B_.push_back(whole.B);
-  }
+  run_of_.reserve(steps);
+  Sampler(*this, trajectory, steps).sample();
+}
+
+void ErrorTrack::add_run(std::size_t legs, std::size_t first_piece) {
+  Run run{first_piece, pieces_.size() == first_piece + 1};
+  const Leg whole = part(run, 0.0, step_s_);
+  run.Phi = whole.Phi;
+  run.motion = whole.motion;
+  run_of_.insert(run_of_.end(), legs, static_cast<std::uint32_t>(runs_.size()));
+  runs_.push_back(run);
+  if (config_.parameters) B_.push_back(whole.B);
 }
 
 Leg ErrorTrack::leg(double from_s, double to_s) const {
   const double steps_before = std::floor(from_s / step_s_ + kSlack);
-  const std::size_t step = static_cast<std::size_t>(steps_before) % Phi_.size();
+  const std::size_t index = run_of_[static_cast<std::size_t>(steps_before) % run_of_.size()];
+  const Run& run = runs_[index];
   const double start_s = steps_before * step_s_;
   const double offset_s = from_s - start_s;
   const double slack_s = kSlack * step_s_;
   const bool to_the_end = to_s > start_s + step_s_ - slack_s;
   Leg result;
   if (to_the_end && offset_s < slack_s) {
-    result.Phi = Phi_[step];
-    result.motion = motion_[step];
-    if (config_.parameters) result.B = B_[step];
+    result.Phi = run.Phi;
+    result.motion = run.motion;
+    if (config_.parameters) result.B = B_[index];
   } else {
-    result = part(step, offset_s, to_the_end ? step_s_ : to_s - start_s);
+    result = part(run, offset_s, to_the_end ? step_s_ : to_s - start_s);
   }
   // The last sliver of a step is no leg of its own.
   result.end_s = to_the_end && to_s > start_s + step_s_ + slack_s ? start_s + step_s_ : to_s;
   return result;
+}
+
+bool ErrorTrack::is_stationary() const {
+  const Piece& first = pieces_.front();
+  return std::ranges::all_of(pieces_, [&first](const Piece& piece) {
+    constexpr double kRounding = 1e-9;  // rad, m/s^2
+    return (piece.C_eb - first.C_eb).norm() < kRounding &&
+           (piece.f_b_mps2 - first.f_b_mps2).norm() < kRounding;
+  });
 }
 
 void ErrorTrack::extend(Leg& leg, const Piece& piece, double dt_s) const {
@@ -98,13 +207,13 @@ void ErrorTrack::extend(Leg& leg, const Piece& piece, double dt_s) const {
   leg.B = times(Phi, leg.B + half) + half;
 }
 
-Leg ErrorTrack::part(std::size_t step, double from_s, double to_s) const {
+Leg ErrorTrack::part(const Run& run, double from_s, double to_s) const {
   Leg leg;
   for (std::size_t i = 0; i < kPiecesPerStep; ++i) {
     const double begin_s = std::max(from_s, static_cast<double>(i) * piece_s_);
     const double end_s = std::min(to_s, static_cast<double>(i + 1) * piece_s_);
     if (end_s - begin_s <= kSlack * piece_s_) continue;
-    const Piece& piece = pieces_[step * kPiecesPerStep + i];
+    const Piece& piece = pieces_[run.first_piece + (run.is_steady ? 0 : i)];
     extend(leg, piece, end_s - begin_s);
     leg.motion.omega_ib_b_radps += (end_s - begin_s) * piece.motion.omega_ib_b_radps;
     leg.motion.acceleration_e_mps2 += (end_s - begin_s) * piece.motion.acceleration_e_mps2;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lib/earth/field_walk.hpp"
+#include "sim/analysis/end_analysis.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -35,6 +36,7 @@ class Solver {
       : scene_(scene),
         config_(config),
         track_(error_track(scene, config.covariance_step_s)),
+        stretches_(scene, track_),
         log_longest_(std::log(0.5 * scene.duration_s)) {}
 
   Interval solve(double limit_m) {
@@ -79,17 +81,17 @@ class Solver {
   }
 
  private:
-  CovarianceAnalysis analysis_at(double log_interval, const ErrorTrack& track) const {
+  CovarianceAnalysis analysis_at(double log_interval, Stretches& stretches) const {
     Scene scene = scene_;
     scene.gnss.interval_s = std::exp(log_interval);
-    return analyze(scene, track);
+    return analyze_end(scene, stretches);
   }
 
   /// Every interval is analysed once, whatever limits ask for it.
   const CovarianceAnalysis& known(double log_interval) {
     auto found = known_.find(log_interval);
     if (found == known_.end()) {
-      found = known_.emplace(log_interval, analysis_at(log_interval, track_)).first;
+      found = known_.emplace(log_interval, analysis_at(log_interval, stretches_)).first;
       if (config_.observer) config_.observer(std::exp(log_interval), found->second);
     }
     return found->second;
@@ -153,15 +155,20 @@ class Solver {
     if (!config_.with_step_effect) return;
     // Fixes closer than half a step are the steps.
     if (std::exp(log_interval) <= 0.5 * config_.covariance_step_s) return;
-    if (!fine_track_) fine_track_ = error_track(scene_, 0.5 * config_.covariance_step_s);
-    const double fine_m = analysis_at(log_interval, *fine_track_).true_m;
+    if (!fine_track_) {
+      fine_track_ = error_track(scene_, 0.5 * config_.covariance_step_s);
+      fine_stretches_.emplace(scene_, *fine_track_);
+    }
+    const double fine_m = analysis_at(log_interval, *fine_stretches_).true_m;
     answer.step_effect = std::abs(fine_m / analysis.true_m - 1.0);
   }
 
   const Scene& scene_;
   const IntervalConfig& config_;
   ErrorTrack track_;
+  Stretches stretches_;
   std::optional<ErrorTrack> fine_track_{};
+  std::optional<Stretches> fine_stretches_{};
   double log_longest_;
   std::map<double, CovarianceAnalysis> known_{};  // by log(interval)
 };

@@ -61,6 +61,14 @@ class Claim {
     }
   }
 
+  void propagate(const Stretch& stretch) {
+    static_assert(kParameters == 0);
+    leeway::propagate(P_, stretch.Phi, ProcessNoise{});
+    P_ += stretch.claimed_noise;
+  }
+
+  void set_errors(const ErrorMatrix& P) { P_.template topLeftCorner<kErrorStates, kErrorStates>() = P; }
+
   /// @returns the gain
   Vector take(const Vector& h) {
     Vector K = Vector::Zero();
@@ -107,6 +115,21 @@ class SceneCovariance {
     if (truth_) truth_->propagate(leg);
     if (aiding_) aid(leg.end_s - leg.Phi.dt_s, leg.end_s);
   }
+
+  /// Whether stretches of many legs may be taken, and fixes that hold nothing be doubled.
+  bool takes_stretches() const {
+    return kParameters == 0 && !aiding_ && (!truth_ || truth_->takes_stretches());
+  }
+
+  /// @pre takes_stretches()
+  void propagate(const Stretch& stretch) {
+    claim_.propagate(stretch);
+    if (truth_) truth_->propagate(stretch);
+  }
+
+  Claim<kParameters>& claim() { return claim_; }
+  /// None where the claim is the truth.
+  std::optional<TruthModel<1, kParameters>>& truth_model() { return truth_; }
 
   /// Takes the fix into both with the filter's gains.
   void update(const FixRows& fix, Held held, double t_s) {

@@ -13,6 +13,7 @@
 #include "leeway/sensors/imu_error_model.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
 #include "sim/analysis/fix_rows.hpp"
+#include "sim/analysis/stretch.hpp"
 
 namespace leeway::sim {
 
@@ -135,7 +136,8 @@ class SourceCovariance {
     processes_.push_back(source);
   }
 
-  bool has_processes() const { return !processes_.empty(); }
+  const std::vector<MarkovSource<kFilters, kParameters>>& processes() const { return processes_; }
+  std::vector<MarkovSource<kFilters, kParameters>>& processes() { return processes_; }
 
   void propagate(const Leg& leg) {
     // Half before and half after, as propagate() does with noise: second order in the step.
@@ -143,6 +145,16 @@ class SourceCovariance {
     step_errors(leg);
     for (MarkovSource<kFilters, kParameters>& source : processes_) carry(leg.Phi, source.S);
     step_processes(0.5 * leg.Phi.dt_s);
+  }
+
+  /// Over many legs. @pre one filter of 15 states, and no process enters between fixes
+  void propagate(const Stretch& stretch) {
+    leeway::propagate(P, stretch.Phi, ProcessNoise{});
+    P += stretch.true_noise;
+    for (MarkovSource<kFilters, kParameters>& source : processes_) {
+      carry(stretch.Phi, source.S);
+      source.S *= bias_decay(stretch.Phi.dt_s, source.process.tau_s);
+    }
   }
 
   /// error' = error - K innovation, in second moments.
@@ -250,6 +262,8 @@ class ParameterSources {
     for_each_filter(S_, [&leg](auto rows, int) { rows = times(leg.Phi, rows) + leg.B; });
   }
 
+  void propagate(const Stretch& stretch) { S_ = times(stretch.Phi, S_) + stretch.B; }
+
   void update(const RowGain<kFilters, kParameters>& gain) { S_ -= gain.K * measured(gain.h, S_); }
 
   /// @param second_moment  E[p p^T] of the parameters that belong to the source
@@ -259,8 +273,11 @@ class ParameterSources {
     return half.lazyProduct(S_.transpose());
   }
 
- private:
   using Sensitivity = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, kSensorParameters>;
+  const Sensitivity& sensitivity() const { return S_; }
+  void set_sensitivity(const Sensitivity& S) { S_ = S; }
+
+ private:
   Sensitivity S_{Sensitivity::Zero()};
 };
 

@@ -54,13 +54,32 @@ class TruthModel {
   bool is_known_to(const ErrorMoment<kFilters, kParameters>& filter_P,
                    const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const {
     const SourceCovariance<kFilters, kParameters>& all = sources_.front().second;
-    if (by_source_ || all.has_processes() || !parameter_moments_.empty()) return false;
+    if (by_source_ || !all.processes().empty() || !parameter_moments_.empty()) return false;
     return all.P.isApprox(filter_P, 1e-12) &&
            noise_variance(all.noise, 1.0) == noise_variance(filters_.front(), 1.0) &&
            all.row_variance.template head<6>().isApprox(filter_fix_variance, 1e-12);
   }
 
-  void propagate(const Leg& leg) {
+  /// Of the white noise of all sensors. @pre not by source
+  const ProcessNoise& white_noise() const { return sources_.front().second.noise; }
+
+  /// Whether stretches of many legs may be taken: no error has a memory of its own between fixes.
+  bool takes_stretches() const {
+    using Source = MarkovSource<kFilters, kParameters>;
+    return !by_source_ && std::ranges::all_of(sources_.front().second.processes(), [](const auto& p) {
+      return p.enters_at == Source::kFixes;
+    });
+  }
+
+  /// What RiccatiMap carries, all sources in one. @pre takes_stretches()
+  SourceCovariance<kFilters, kParameters>& whole() { return sources_.front().second; }
+  ParameterSources<kFilters, kParameters>* parameters() {
+    return parameter_moments_.empty() ? nullptr : &parameters_;
+  }
+
+  /// @tparam Part  a Leg, or a Stretch where takes_stretches()
+  template <class Part>
+  void propagate(const Part& leg) {
     for (auto& [name, source] : sources_) source.propagate(leg);
     if (!parameter_moments_.empty()) parameters_.propagate(leg);
   }

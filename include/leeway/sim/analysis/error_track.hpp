@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -40,7 +41,9 @@ struct ErrorTrackConfig {
 
 /// The dynamics along a trajectory. Attitude, rates and gravity gradient are taken at the middle of
 /// pieces a tenth of a leg long and held over the piece: on a turn of 9 deg/s legs of 1 s err by
-/// 1e-5 of their effect. A trajectory with a period is sampled over one period.
+/// 1e-5 of their effect. Where the motion is steady the middle of a run of up to 64 legs stands for
+/// all of them: while it turns by less than 1e-4 rad. A trajectory with a period is sampled over
+/// one period.
 class ErrorTrack {
  public:
   /// @throws Error unless 0.01 <= step_s <= 100 and 0 < duration_s.
@@ -50,6 +53,17 @@ class ErrorTrack {
   /// earlier.
   /// @pre 0 <= from_s < to_s <= duration.
   Leg leg(double from_s, double to_s) const;
+
+  /// Legs of the whole span, or of one period.
+  std::size_t steps() const { return run_of_.size(); }
+  double step_s() const { return step_s_; }
+  bool has_parameters() const { return config_.parameters; }
+
+  /// Whether the dynamics are the same all the time: at rest on the Earth.
+  bool is_stationary() const;
+
+  /// The run that a leg belongs to: legs of the same run are the same.
+  std::size_t run_of(std::size_t step) const { return run_of_[step]; }
 
   /// Walk from one time to the other: f is called with each leg.
   /// @pre 0 <= from_s, to_s <= duration.
@@ -71,16 +85,26 @@ class ErrorTrack {
     MeanMotion motion;  // as the filter's, over the seconds before
   };
 
+  /// Legs in a row with the same dynamics: one leg of many pieces, or many of one.
+  struct Run {
+    std::size_t first_piece;
+    bool is_steady;
+    Transition Phi{};  // of a whole leg
+    MeanMotion motion{};
+  };
+
+  class Sampler;
+  void add_run(std::size_t legs, std::size_t first_piece);
   void extend(Leg& leg, const Piece& piece, double dt_s) const;
-  Leg part(std::size_t step, double from_s, double to_s) const;
+  Leg part(const Run& run, double from_s, double to_s) const;
 
   ErrorTrackConfig config_;
   double step_s_;  // config_.step_s or a little less: whole steps in the span
   double piece_s_;
   std::vector<Piece> pieces_{};
-  std::vector<Transition> Phi_{};     // of whole steps
-  std::vector<ParameterMatrix> B_{};  // likewise
-  std::vector<MeanMotion> motion_{};
+  std::vector<Run> runs_{};
+  std::vector<ParameterMatrix> B_{};  // of the runs
+  std::vector<std::uint32_t> run_of_{};
 };
 
 }  // namespace leeway::sim
