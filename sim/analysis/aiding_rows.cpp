@@ -8,88 +8,107 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kBlockS = 0.5;  // of the navigator's constraints
+constexpr double kBlockS = 0.5;     // of the navigator's constraints
+constexpr double kToRestS = 1.0;    // two blocks
 constexpr double kStillMps = 1e-3;
-
-bool is_still(const Trajectory& trajectory, double t_s) {
-  return truth_at(trajectory, std::max(t_s, 0.0)).nav.v_e_mps.norm() < kStillMps;
-}
-
-/// What all rows of a step share.
-struct Step {
-  double dt_s;
-  TruthPoint truth;
-  Estimate estimate;
-  std::vector<AidingRow> rows{};
-
-  /// Adds a measurement that comes every interval_s and is told with the variance m.R.
-  /// @param seconds  the time over which the noise of a true reading is that of the kind
-  void add(RowKind kind, const Measurement& m, double interval_s, double seconds, Held held) {
-    for (int i = 0; i < m.rows(); ++i) {
-      AidingRow row{kind};
-      const double per_sigma = std::sqrt(dt_s / interval_s / m.R(i, i));
-      row.h << per_sigma * m.H.row(i).transpose(), per_sigma * m.H_vehicle.row(i).transpose();
-      row.per_sigma = per_sigma * std::sqrt(seconds / dt_s);
-      row.held = held;
-      rows.push_back(row);
-    }
-  }
-};
+constexpr double kEvenMps2 = 0.05;  // of gravity, the tilt of a level that is known to 0.3 deg
+constexpr double kEndSlack = 1e-6;  // of a step
 
 }  // namespace
 
-bool rests(const Trajectory& trajectory, double t_s) {
-  return is_still(trajectory, t_s) && is_still(trajectory, t_s - 2.0 * kBlockS);
-}
-
-SceneAiding::SceneAiding(const Scene& scene)
-    : scene_(scene),
-      config_(scene.vehicle->config),
-      believed_(vehicle_state(scene.vehicle->config).value) {}
-
-bool SceneAiding::any() const {
-  const VehicleConfig& c = config_;
-  return c.zero_velocity || c.zero_angular_rate || c.non_holonomic || c.odometer || c.barometer ||
-         c.heading;
-}
-
-std::vector<AidingRow> SceneAiding::rows(double from_s, double to_s) const {
-  const SceneVehicle& vehicle = *scene_.vehicle;
-  Step step{to_s - from_s, truth_at(scene_.trajectory, to_s), {}};
-  step.estimate.nav = step.truth.nav;
-  const Eigen::Vector3d& omega = step.truth.omega_ib_b_radps;
-  const double speed_mps = step.truth.nav.v_e_mps.norm();
-  if (rests(scene_.trajectory, to_s)) {
-    if (config_.zero_velocity) {
-      step.add(kExactRow, zero_velocity(step.estimate, config_.rest_sigma_mps), kBlockS, 1.0,
-               Held::kHeadingAndTurn);
-    }
-    if (config_.zero_angular_rate) {
-      const double noise_radps = scene_.filter.imu.gyro.noise_density / std::sqrt(kBlockS);
-      const double sigma_radps = std::hypot(noise_radps, config_.rest_turn_sigma_radps);
-      step.add(kRateRow, zero_angular_rate(step.estimate, omega, sigma_radps), kBlockS, 1.0,
-               Held::kHeading);
-    }
-  } else if (config_.non_holonomic && speed_mps >= config_.min_speed_mps) {
-    const double right_mps =
-        std::hypot(config_.right_sigma_mps, config_.right_sigma_m * omega.norm());
-    step.add(kExactRow,
-             non_holonomic(step.estimate, believed_, omega, right_mps,
-                           config_.down_sigma_m2ps2 / speed_mps),
-             kBlockS, 1.0, Held::kNothing);
+SceneAiding::SceneAiding(const Scene& scene, double step_s) : step_s_(step_s) {
+  if (scene.vehicle) believed_ = vehicle_state(scene.vehicle->config).value;
+  const auto steps = static_cast<std::size_t>(std::floor(scene.duration_s / step_s + kEndSlack));
+  samples_.reserve(steps + 1);
+  double still_s = kToRestS;  // a scene that begins at rest has been
+  double even_s = 0.0;
+  Eigen::Vector3d v_e_mps = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const TruthPoint truth =
+        truth_at(scene.trajectory, std::min(static_cast<double>(k) * step_s, scene.duration_s));
+    const bool is_still = truth.nav.v_e_mps.norm() < kStillMps;
+    const bool is_even = k == 0 || (truth.nav.v_e_mps - v_e_mps).norm() < kEvenMps2 * step_s;
+    if (k > 0) still_s += step_s;
+    if (!is_still) still_s = 0.0;
+    even_s = is_even ? even_s + step_s : 0.0;
+    v_e_mps = truth.nav.v_e_mps;
+    samples_.push_back({{truth.nav, {}}, still_s >= kToRestS, static_cast<float>(even_s),
+                        static_cast<std::uint32_t>(rows_.size())});
+    if (k > 0 && scene.vehicle) add_rows(scene, truth);
   }
+}
+
+const SceneAiding::Sample& SceneAiding::sample_at(double t_s) const {
+  const auto k = static_cast<std::size_t>(std::max(t_s / step_s_ + kEndSlack, 0.0));
+  return samples_[std::min(k, samples_.size() - 1)];
+}
+
+std::span<const AidingRow> SceneAiding::rows(double end_s) const {
+  const double steps = end_s / step_s_;
+  const double k = std::round(steps);
+  if (std::abs(steps - k) > kEndSlack || k >= static_cast<double>(samples_.size())) return {};
+  const auto at = static_cast<std::size_t>(k);
+  const std::size_t end = at + 1 < samples_.size() ? samples_[at + 1].first_row : rows_.size();
+  return {rows_.data() + samples_[at].first_row, end - samples_[at].first_row};
+}
+
+/// A measurement that comes every interval_s and is told with the variance m.R.
+/// @param seconds  the time over which the noise of a true reading is that of the kind
+void SceneAiding::add(RowKind kind, const Measurement& m, double interval_s, double seconds,
+                      Held held) {
+  for (int i = 0; i < m.rows(); ++i) {
+    AidingRow row{kind};
+    const double per_sigma = std::sqrt(step_s_ / interval_s / m.R(i, i));
+    row.h << per_sigma * m.H.row(i).transpose(), per_sigma * m.H_vehicle.row(i).transpose();
+    row.per_sigma = per_sigma * std::sqrt(seconds / step_s_);
+    row.held = held;
+    rows_.push_back(row);
+  }
+}
+
+void SceneAiding::add_rows(const Scene& scene, const TruthPoint& truth) {
+  add_constraints(scene, truth);
+  add_sensors(scene, truth);
+}
+
+void SceneAiding::add_constraints(const Scene& scene, const TruthPoint& truth) {
+  const VehicleConfig& config = scene.vehicle->config;
+  const Estimate estimate{truth.nav, {}};
+  const double speed_mps = truth.nav.v_e_mps.norm();
+  if (samples_.back().rests) {
+    if (config.zero_velocity) {
+      add(kExactRow, zero_velocity(estimate, config.rest_sigma_mps), kBlockS, 1.0,
+          Held::kHeadingAndTurn);
+    }
+    if (config.zero_angular_rate) {
+      const double noise_radps = scene.filter.imu.gyro.noise_density / std::sqrt(kBlockS);
+      const double sigma_radps = std::hypot(noise_radps, config.rest_turn_sigma_radps);
+      add(kRateRow, zero_angular_rate(estimate, truth.omega_ib_b_radps, sigma_radps), kBlockS, 1.0,
+          Held::kHeading);
+    }
+  } else if (config.non_holonomic && speed_mps >= config.min_speed_mps) {
+    const double right_mps = std::hypot(config.right_sigma_mps,
+                                        config.right_sigma_m * truth.omega_ib_b_radps.norm());
+    add(kExactRow,
+        non_holonomic(estimate, believed_, truth.omega_ib_b_radps, right_mps,
+                      config.down_sigma_m2ps2 / speed_mps),
+        kBlockS, 1.0, Held::kNothing);
+  }
+}
+
+void SceneAiding::add_sensors(const Scene& scene, const TruthPoint& truth) {
+  const Estimate estimate{truth.nav, {}};
   const auto add_sensor = [&](const std::optional<VehicleSensor>& sensor, RowKind kind,
                               auto reading) {
     if (!sensor) return;
     auto& [time, value, sigma] = reading;
     sigma = sensor->sigma;
-    step.add(kind, measurement(reading, step.estimate, believed_, omega), sensor->interval_s,
-             sensor->interval_s, Held::kNothing);
+    add(kind, measurement(reading, estimate, believed_, truth.omega_ib_b_radps),
+        sensor->interval_s, sensor->interval_s, Held::kNothing);
   };
-  add_sensor(vehicle.odometer, kOdometerRow, OdometerSpeed{});
-  add_sensor(vehicle.barometer, kBarometerRow, BarometricHeight{});
-  add_sensor(vehicle.heading, kHeadingRow, MeasuredHeading{});
-  return std::move(step.rows);
+  add_sensor(scene.vehicle->odometer, kOdometerRow, OdometerSpeed{});
+  add_sensor(scene.vehicle->barometer, kBarometerRow, BarometricHeight{});
+  add_sensor(scene.vehicle->heading, kHeadingRow, MeasuredHeading{});
 }
 
 }  // namespace leeway::sim

@@ -3,6 +3,8 @@
 /// constraints and sensors in units of what the filter takes for their noise.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "leeway/ekf/update_outcome.hpp"
@@ -22,26 +24,44 @@ struct AidingRow {
 };
 
 /// The vehicle aiding of a scene's navigator, without noise in its decisions: where the truth rests
-/// the vehicle is at rest. Measurements of a step count as one at its end, with the noise of their
-/// mean.
+/// the vehicle is at rest. Sampled once, at the ends of steps. Measurements of a step count as one at
+/// its end, with the noise of their mean.
 class SceneAiding {
  public:
-  /// @pre scene.vehicle
-  explicit SceneAiding(const Scene& scene);
+  SceneAiding(const Scene& scene, double step_s);
 
-  /// Whether anything is told at all.
-  bool any() const;
+  bool has_rows() const { return !rows_.empty(); }
 
-  /// The rows of a step that ends at to_s.
-  std::vector<AidingRow> rows(double from_s, double to_s) const;
+  /// The rows of the step that ends at this time; none between the ends of steps.
+  std::span<const AidingRow> rows(double end_s) const;
+
+  /// Whether the truth has been at rest, as long as the navigator takes to see it.
+  bool rests(double t_s) const { return sample_at(t_s).rests; }
+
+  /// How long, s, no horizontal acceleration has been more than that of a tilt.
+  double even_s(double t_s) const { return sample_at(t_s).even_s; }
+
+  /// The truth at the last end of a step.
+  const Estimate& truth(double t_s) const { return sample_at(t_s).truth; }
 
  private:
-  const Scene& scene_;
-  const VehicleConfig& config_;
-  VehicleVector believed_;
-};
+  struct Sample {
+    Estimate truth{};
+    bool rests{};
+    float even_s{};
+    std::uint32_t first_row{};
+  };
 
-/// Whether the truth has been at rest, as long as the navigator takes to see it.
-bool rests(const Trajectory& trajectory, double t_s);
+  const Sample& sample_at(double t_s) const;
+  void add_rows(const Scene& scene, const TruthPoint& truth);
+  void add(RowKind kind, const Measurement& m, double interval_s, double seconds, Held held);
+  void add_constraints(const Scene& scene, const TruthPoint& truth);
+  void add_sensors(const Scene& scene, const TruthPoint& truth);
+
+  double step_s_;
+  VehicleVector believed_{VehicleVector::Zero()};
+  std::vector<Sample> samples_{};
+  std::vector<AidingRow> rows_{};
+};
 
 }  // namespace leeway::sim

@@ -49,18 +49,6 @@ double believed_correlation_s(const Scene& scene) {
   return is_navigator && is_fixed ? 0.0 : scene.filter.gnss_correlation_s;
 }
 
-/// Whether nothing has shown the heading for a while: no horizontal acceleration beyond that of tilt.
-bool moves_evenly(const Trajectory& trajectory, double t_s, double for_s) {
-  constexpr double kEvenMps2 = 0.05;
-  constexpr double kStepS = 0.5;
-  for (double back_s = 0.0; back_s <= for_s; back_s += kStepS) {
-    const NavState now = truth_at(trajectory, std::max(t_s - back_s, 0.0)).nav;
-    const NavState before = truth_at(trajectory, std::max(t_s - back_s - kStepS, 0.0)).nav;
-    if ((now.v_e_mps - before.v_e_mps).norm() > kEvenMps2 * kStepS) return false;
-  }
-  return true;
-}
-
 /// The extremes of a stretch of the scene, to be compared with those of the next.
 struct Window {
   long index{-1};  // counted back from the end
@@ -86,7 +74,7 @@ class Analysis {
         stretches_(stretches),
         config_(config),
         correlation_s_(believed_correlation_s(scene)),
-        pair_(scene, config.by_source),
+        pair_(scene, config.by_source, track.aiding()),
         window_s_(repeating_part_s(scene)),
         scored_s_(scored_part_s(scene)) {
     if (!pair_.takes_stretches()) stretches_ = nullptr;
@@ -252,11 +240,11 @@ class Analysis {
 
   /// What the navigator does not let a fix tell: the heading at rest, or after a while of even motion.
   Held held_at(double since_s) const {
-    if (scene_.estimator != SceneEstimator::kNavigator) return Held::kNothing;
+    const SceneAiding* aiding = track_.aiding().get();
+    if (scene_.estimator != SceneEstimator::kNavigator || !aiding) return Held::kNothing;
     const bool rolls = scene_.vehicle && scene_.vehicle->config.non_holonomic;
     const double even_s = std::max(kEvenS, kEvenFixes * since_s);
-    const bool hides = rests(scene_.trajectory, now_s_) ||
-                       (!rolls && moves_evenly(scene_.trajectory, now_s_, even_s));
+    const bool hides = aiding->rests(now_s_) || (!rolls && aiding->even_s(now_s_) > even_s);
     return hides && pair_.heading_is_hidden(now_s_) ? Held::kHeadingAndTurn : Held::kNothing;
   }
 
@@ -283,10 +271,13 @@ class Analysis {
 
 ErrorTrack error_track(const Scene& scene, double step_s) {
   const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
-  return {scene.trajectory,
-          scene.duration_s,
-          {std::min(step_s, step_limit_s(scene.imu)), !parameter_moments(scene.imu).empty(),
-           noise.tau_a_s, noise.tau_g_s}};
+  ErrorTrack track(scene.trajectory, scene.duration_s,
+                   {std::min(step_s, step_limit_s(scene.imu)),
+                    !parameter_moments(scene.imu).empty(), noise.tau_a_s, noise.tau_g_s});
+  if (scene.vehicle || scene.estimator == SceneEstimator::kNavigator) {
+    track.set_aiding(std::make_shared<SceneAiding>(scene, track.step_s()));
+  }
+  return track;
 }
 
 void free_inertial(const Scene& scene, const ErrorTrack& track,
@@ -295,7 +286,7 @@ void free_inertial(const Scene& scene, const ErrorTrack& track,
   Scene perfectly_started = scene;
   perfectly_started.initial = InitialSigma{};
   perfectly_started.vehicle.reset();
-  SceneCovariance<0> pair(perfectly_started, false);
+  SceneCovariance<0> pair(perfectly_started, false, nullptr);
   CovariancePoint point;
   do {
     const Leg leg = track.leg(point.t_s, scene.duration_s);

@@ -12,7 +12,8 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kFirstGuessS = 10.0;
-constexpr double kBracketFactor = 1.41;
+constexpr double kShorterBy = 10.0;  // below the first guess the error falls evenly
+constexpr double kLongerBy = 1.41;   // above it fixes come in step with the motion and out of it
 constexpr int kMostSecants = 60;
 
 void validate(const Scene& scene, const std::vector<double>& limits_m,
@@ -106,17 +107,16 @@ class Solver {
   /// the lower one keeps the limit, as far as the steps see it. They are the same for all limits.
   std::pair<Sample, Sample> bracket(double log_limit) {
     const double log_shortest = std::log(config_.shortest_s);
-    const double factor = std::log(kBracketFactor);
     Sample below = sample(std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_));
     Sample above = below;
     while (below.log_error > log_limit && below.log_interval > log_shortest) {
       above = below;
-      below = sample(std::max(below.log_interval - factor, log_shortest));
+      below = sample(std::max(below.log_interval - std::log(kShorterBy), log_shortest));
     }
     if (below.log_error > log_limit) return {below, below};
     while (above.log_error <= log_limit && above.log_interval < log_longest_) {
       below = above;
-      above = sample(std::min(above.log_interval + factor, log_longest_));
+      above = sample(std::min(above.log_interval + std::log(kLongerBy), log_longest_));
     }
     return {below, above};
   }

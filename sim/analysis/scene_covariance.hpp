@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -93,17 +94,18 @@ class Claim {
 template <int kParameters>
 class SceneCovariance {
  public:
-  /// At the scene's start. @param by_source  keeps the sources apart, for error_budget()
-  SceneCovariance(const Scene& scene, bool by_source)
+  /// At the scene's start.
+  /// @param by_source  keeps the sources apart, for error_budget()
+  /// @param aiding  of the scene's track; null: nothing but fixes is told
+  SceneCovariance(const Scene& scene, bool by_source, std::shared_ptr<const SceneAiding> aiding)
       : scene_(&scene),
         claim_(scene),
         truth_(std::in_place, scene, without_biases(claim_.errors()), std::array{claim_.noise()},
-               by_source) {
-    if (scene.vehicle) aiding_.emplace(scene);
-    if (aiding_ && !aiding_->any()) aiding_.reset();
+               by_source),
+        aiding_(std::move(aiding)) {
     const bool fixes_as_white = scene.filter.gnss_correlation_s == 0.0;
     if constexpr (kParameters == 0) {
-      if (!aiding_ && fixes_as_white &&
+      if (!is_aided() && fixes_as_white &&
           truth_->is_known_to(claim_.errors(), fix_variance(scene.gnss.errors))) {
         truth_.reset();
       }
@@ -113,12 +115,12 @@ class SceneCovariance {
   void propagate(const Leg& leg) {
     claim_.propagate(leg);
     if (truth_) truth_->propagate(leg);
-    if (aiding_) aid(leg.end_s - leg.Phi.dt_s, leg.end_s);
+    if (is_aided()) aid(leg.end_s);
   }
 
   /// Whether stretches of many legs may be taken, and fixes that hold nothing be doubled.
   bool takes_stretches() const {
-    return kParameters == 0 && !aiding_ && (!truth_ || truth_->takes_stretches());
+    return kParameters == 0 && !is_aided() && (!truth_ || truth_->takes_stretches());
   }
 
   /// @pre takes_stretches()
@@ -149,25 +151,28 @@ class SceneCovariance {
     return truth_->covariance().template topLeftCorner<kErrorStates, kErrorStates>();
   }
 
-  /// Whether rest or even motion cannot tell the heading better than it is known.
+  /// Whether rest or even motion cannot tell the heading better than it is known. @pre has aiding
   bool heading_is_hidden(double t_s) const {
-    const Estimate estimate{truth_at(scene_->trajectory, t_s).nav, {}};
-    return rest_hides_heading(scene_->filter.imu, estimate, claim_.errors());
+    return rest_hides_heading(scene_->filter.imu, aiding_->truth(t_s), claim_.errors());
   }
 
   /// @pre made by source.
   ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
 
  private:
+  bool is_aided() const { return aiding_ && aiding_->has_rows(); }
+
   HeldDirections directions(Held held, double t_s) const {
     if (held == Held::kNothing) return HeldDirections::Zero();
-    return directions_of(held, {truth_at(scene_->trajectory, t_s).nav, {}});
+    return directions_of(held, aiding_->truth(t_s));
   }
 
-  void aid(double from_s, double to_s) {
-    for (const AidingRow& row : aiding_->rows(from_s, to_s)) {
-      const Held held =
-          row.held != Held::kNothing && heading_is_hidden(to_s) ? row.held : Held::kNothing;
+  void aid(double to_s) {
+    const auto rows = aiding_->rows(to_s);
+    if (rows.empty()) return;
+    const bool hides = rows.front().held != Held::kNothing && heading_is_hidden(to_s);
+    for (const AidingRow& row : rows) {
+      const Held held = hides ? row.held : Held::kNothing;
       RowGain<1, kParameters> gain{row.kind, row.per_sigma};
       gain.h = row.h.template head<kErrorStates + kParameters>();
       gain.K = held == Held::kNothing ? claim_.take(gain.h)
@@ -178,9 +183,9 @@ class SceneCovariance {
 
   const Scene* scene_;
   Claim<kParameters> claim_;
-  std::optional<SceneAiding> aiding_{};
   /// None: the filter knows all there is, its claim is the truth.
   std::optional<TruthModel<1, kParameters>> truth_;
+  std::shared_ptr<const SceneAiding> aiding_;
 };
 
 }  // namespace leeway::sim

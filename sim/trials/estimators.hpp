@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "leeway/navigator/navigator.hpp"
-#include "leeway/sim/sensors/vehicle_sensors.hpp"
+#include "leeway/sim/scene/vehicle_sensors.hpp"
 #include "leeway/sim/trials/trial.hpp"
 
 namespace leeway::sim {

@@ -8,6 +8,9 @@ export interface Report {
   readonly command_line: string;
   readonly input: Readonly<Record<string, unknown>>;
   readonly results: unknown;
+  /** Of leeway interval: outages that the scene scripts, and what aiding gives. */
+  readonly outages?: unknown;
+  readonly aiding?: unknown;
   readonly series: Readonly<Record<string, Table>>;
 }
 

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "leeway/covariance/transition.hpp"
@@ -39,6 +41,8 @@ struct ErrorTrackConfig {
   double tau_g_s{std::numeric_limits<double>::infinity()};
 };
 
+class SceneAiding;
+
 /// The dynamics along a trajectory. Attitude, rates and gravity gradient are taken at the middle of
 /// pieces a tenth of a leg long and held over the piece: on a turn of 9 deg/s legs of 1 s err by
 /// 1e-5 of their effect. Where the motion is steady the middle of a run of up to 64 legs stands for
@@ -58,6 +62,10 @@ class ErrorTrack {
   std::size_t steps() const { return run_of_.size(); }
   double step_s() const { return step_s_; }
   bool has_parameters() const { return config_.parameters; }
+
+  /// What the scene's vehicle tells along the way; null where nothing asks for it.
+  const std::shared_ptr<const SceneAiding>& aiding() const { return aiding_; }
+  void set_aiding(std::shared_ptr<const SceneAiding> aiding) { aiding_ = std::move(aiding); }
 
   /// Whether the dynamics are the same all the time: at rest on the Earth.
   bool is_stationary() const;
@@ -105,6 +113,7 @@ class ErrorTrack {
   std::vector<Run> runs_{};
   std::vector<ParameterMatrix> B_{};  // of the runs
   std::vector<std::uint32_t> run_of_{};
+  std::shared_ptr<const SceneAiding> aiding_{};
 };
 
 }  // namespace leeway::sim

@@ -8,7 +8,8 @@ import { metricOf, sceneInWords, sceneOf, type SceneInput } from "./scene";
 interface Confirm {
   readonly trials: number;
   readonly rms_over_sigma: number;
-  readonly rms_over_true: number;
+  readonly error_over_true: number;
+  readonly agrees: boolean;
   readonly nees: number;
   readonly nees_low: number;
   readonly nees_high: number;
@@ -21,6 +22,9 @@ interface Row {
   readonly range: string | null;
   readonly limit_m: number;
   readonly interval_s: number | null;
+  /** What the answer rests on; answer_s is the trials' where they contradict. */
+  readonly mark: "linear" | "checked" | "by trials";
+  readonly answer_s: number | null;
   readonly free_inertial_s: number | null;
   readonly consistent: boolean | null;
   readonly confirm: Confirm | null;
@@ -31,8 +35,30 @@ interface Row {
   readonly covariance_step_effect: number;
 }
 
+/** An outage that the scene scripts. */
+interface Coast {
+  readonly imu: string;
+  readonly range: string | null;
+  readonly start_s: number;
+  readonly duration_s: number;
+  readonly end_s: number;
+  readonly end_error_m: number;
+  readonly limit_m: number;
+  readonly keeps_limit: boolean;
+  readonly coast_s: number | null;
+}
+
+interface Aided {
+  readonly aiding: string;
+  readonly is_the_scenes: boolean;
+  readonly imu: string;
+  readonly limit_m: number;
+  readonly interval_s: number | null;
+}
+
 export function intervalView(report: Report): View {
   const rows = report.results as readonly Row[];
+  if (report.outages !== undefined) return outagesView(report, report.outages as readonly Coast[]);
   const scene = sceneOf(report);
   const imus = [...new Set(rows.map(nameOf))];
   const limits = [...new Set(rows.map((row) => row.limit_m))];
@@ -40,7 +66,11 @@ export function intervalView(report: Report): View {
     title: "How long can an IMU go between GNSS fixes?",
     scene: sceneInWords(scene, false),
     answer: limits.map((limit) => answerFor(rows, limit)),
-    tables: [answersGrid(rows, imus, limits), ...confirmGrid(rows)],
+    tables: [
+      answersGrid(rows, imus, limits),
+      ...aidedGrid((report.aiding ?? []) as readonly Aided[]),
+      ...confirmGrid(rows),
+    ],
     trust: trust(rows, scene),
     charts: [
       errorChart(report, rows, imus, limits, scene),
@@ -51,14 +81,63 @@ export function intervalView(report: Report): View {
   };
 }
 
-const nameOf = (row: Row): string => (row.range ? `${row.imu}/${row.range}` : row.imu);
+/** A scene with outages is asked how far each carries the error, and how long the limit allows. */
+function outagesView(report: Report, coasts: readonly Coast[]): View {
+  const scene = sceneOf(report);
+  const kept = coasts.filter((c) => c.keeps_limit);
+  return {
+    title: "How far does an outage carry the error?",
+    scene: sceneInWords(scene, true),
+    answer: [
+      kept.length === coasts.length
+        ? "Every IMU stays within the limit to the end of every outage."
+        : `${kept.length} of ${count(coasts.length, "outage")} end within the limit.`,
+    ],
+    tables: [
+      {
+        caption:
+          "Error before the first fix after each outage, and the coast time: how long without " +
+          "fixes until the limit, from the outage's start",
+        headings: ["IMU", "outage at, s", "for, s", "error at its end, m", "limit, m", "keeps it",
+          "coast time, s"],
+        rows: coasts.map((c) => [
+          nameOf(c), short(c.start_s), short(c.duration_s), short(c.end_error_m), short(c.limit_m),
+          c.keeps_limit ? "yes" : `no, at ${withUnit(c.end_s, "s")}`,
+          c.coast_s === null ? "to the scene's end" : short(c.coast_s),
+        ]),
+      },
+    ],
+    trust: [
+      `The error is ${metricOf(scene)}, by covariance analysis: linearized along the true motion, ` +
+        "against sensors that also have the errors the filter does not model.",
+    ],
+    charts: [],
+  };
+}
+
+function aidedGrid(aided: readonly Aided[]): Grid[] {
+  const first = aided[0];
+  if (!first) return [];
+  return [
+    {
+      caption:
+        `What the vehicle tells beside its receiver: the interval of ${first.imu} at ` +
+        `${withUnit(first.limit_m, "m")}, linear`,
+      headings: ["aiding", "interval, s", ""],
+      rows: aided.map((a) => [a.aiding, short(a.interval_s), a.is_the_scenes ? "the scene's" : ""]),
+    },
+  ];
+}
+
+const nameOf = (row: { readonly imu: string; readonly range: string | null }): string => (row.range ? `${row.imu}/${row.range}` : row.imu);
 /** A class without its "mid", which is what it is when nothing else is said. */
 const spoken = (imu: string): string => imu.replace(/\/mid$/, "");
 
 /** The interval to rely on: that of the trials where they contradict the linear analysis. */
-function reliable(row: Row): number | null {
-  return row.consistent === false ? (row.confirm?.monte_carlo_interval_s ?? null) : row.interval_s;
-}
+const reliable = (row: Row): number | null => row.answer_s;
+
+const signOf = ({ mark }: Row): string =>
+  mark === "linear" ? "" : mark === "checked" ? " ✓" : " ✗";
 
 function answerFor(rows: readonly Row[], limit: number): string {
   const asked = rows.filter((row) => row.limit_m === limit);
@@ -76,8 +155,8 @@ function answerFor(rows: readonly Row[], limit: number): string {
 
 /** @pre it has an interval */
 function needOf(row: Row): string {
-  const sure = row.consistent === null ? "" : row.consistent ? " ✓" : " (by the trials)";
-  const more = row.outcome === "always" ? "half of the scene, " : "";
+  const sure = row.mark === "by trials" ? " (by the trials)" : signOf(row);
+  const more = row.outcome === "always" && row.mark !== "by trials" ? "half of the scene, " : "";
   return `${more}${duration(reliable(row) as number)} by ${spoken(nameOf(row))}${sure}`;
 }
 
@@ -85,15 +164,14 @@ function answersGrid(rows: readonly Row[], imus: readonly string[], limits: read
   const cell = (imu: string, limit: number): string => {
     const row = rows.find((r) => nameOf(r) === imu && r.limit_m === limit);
     if (!row) return "-";
-    const mark = row.consistent === null ? "" : row.consistent ? " ✓" : " ✗";
-    return `${short(row.interval_s)}${mark} (${short(row.free_inertial_s)})`;
+    return `${short(row.answer_s)}${signOf(row)} (${short(row.free_inertial_s)})`;
   };
-  const anyTrials = rows.some((row) => row.consistent !== null);
+  const anyTrials = rows.some((row) => row.mark !== "linear");
   return {
     caption:
       "Longest time between fixes, s; in brackets the time that it lasts without any, from a " +
       "perfect start, s" +
-      (anyTrials ? ". ✓ confirmed by trials, ✗ contradicted by them." : "."),
+      (anyTrials ? ". ✓ checked by trials, ✗ by trials, which contradict the analysis." : "."),
     headings: ["IMU", ...limits.map((limit) => withUnit(limit, "m"))],
     rows: imus.map((imu) => [imu, ...limits.map((limit) => cell(imu, limit))]),
   };
@@ -104,16 +182,16 @@ function confirmGrid(rows: readonly Row[]): Grid[] {
   if (confirmed.length === 0) return [];
   return [
     {
-      caption: "Monte Carlo trials of the whole nonlinear filter at these intervals",
-      headings: ["IMU", "limit, m", "interval, s", "trials", "RMS / claimed", "RMS / true", "NEES",
+      caption: "Monte Carlo trials of the scene's estimator at the intervals of the analysis",
+      headings: ["IMU", "limit, m", "interval, s", "trials", "RMS / claimed", "error / linear", "NEES",
         "95 % band", "verdict"],
       rows: confirmed.map((row) => {
         const c = row.confirm as Confirm;
         return [
           nameOf(row), short(row.limit_m), short(row.interval_s), String(c.trials),
-          ratio(c.rms_over_sigma), ratio(c.rms_over_true), ratio(c.nees),
+          ratio(c.rms_over_sigma), ratio(c.error_over_true), ratio(c.nees),
           `${c.nees_low.toFixed(2)} to ${c.nees_high.toFixed(2)}`,
-          row.consistent ? "✓" : `✗ ${foundBy(c)}`,
+          c.agrees ? "✓" : `✗ ${foundBy(c)}`,
         ];
       }),
     },
@@ -129,7 +207,8 @@ function foundBy({ monte_carlo_interval_s: seconds }: Confirm): string {
 function trust(rows: readonly Row[], scene: SceneInput): string[] {
   const step = Math.max(...rows.map((row) => row.covariance_step_effect));
   return [
-    `“Within” means ${metricOf(scene)} just before a fix, at the end of the scene.`,
+    `“Within” means ${metricOf(scene)} just before any fix that counts: all after the time to settle, ` +
+      "or those at the scene's end.",
     "The intervals are those of a covariance analysis: the filter's own equations, linearized " +
       "along the true motion, against sensors that also have the errors the filter does not model.",
     ...confirmationInWords(rows),
@@ -145,27 +224,31 @@ function confirmationInWords(rows: readonly Row[]): string[] {
   if (tried.length === 0) {
     return ["Not confirmed: no trials of the nonlinear filter were run. Add --confirm 200."];
   }
-  const trials = (tried[0]?.confirm as Confirm).trials;
-  const failed = tried.filter((row) => row.consistent === false);
+  const trials = tried.map((row) => (row.confirm as Confirm).trials);
+  const [fewest, most] = [Math.min(...trials), Math.max(...trials)];
+  const failed = tried.filter((row) => row.mark === "by trials");
   const name = (row: Row): string => `${spoken(nameOf(row))} at ${withUnit(row.limit_m, "m")}`;
   const words = [
-    `${tried.length - failed.length} of ${count(tried.length, "answer")} confirmed (✓) by ` +
-      `${trials} Monte Carlo trials of the whole nonlinear filter each: it errs as the analysis ` +
-      "says and as it claims.",
+    `${tried.length - failed.length} of ${count(tried.length, "answer")} checked (✓) by ` +
+      `${fewest === most ? fewest : `${fewest} to ${most}`} Monte Carlo trials of the scene's ` +
+      "estimator each: its error is the one that the analysis says, within 10 %.",
   ];
   const untried = rows.filter((row) => row.confirm === null && row.interval_s !== null).length;
   if (untried > 0) words.push(`Not tried: the other ${count(untried, "answer")}, by the analysis alone.`);
   if (failed.length > 0) {
     words.push(
-      `Contradicted (✗): ${list(failed.map(name))}. There the filter errs otherwise than it ` +
-        "claims, and the answer above is the interval at which the trials met the limit, if any.",
+      `Contradicted (✗): ${list(failed.map(name))}. There the trials err otherwise than the ` +
+        "analysis says, and the answer above is the interval at which the trials met the limit, if any.",
     );
   }
   return words;
 }
 
 function honesty(rows: readonly Row[]): string[] {
-  const ratios = rows.filter((row) => row.claimed_error_m > 0).map((row) => row.error_m / row.claimed_error_m);
+  // What trials contradict says nothing of the linear claim.
+  const ratios = rows
+    .filter((row) => row.claimed_error_m > 0 && row.mark !== "by trials")
+    .map((row) => row.error_m / row.claimed_error_m);
   const [least, most] = [Math.min(...ratios), Math.max(...ratios)];
   if (ratios.length === 0) return [];
   if (most < 1.05 && least > 0.95) {
@@ -203,7 +286,7 @@ function errorChart(
     lines.push({
       label: "Monte Carlo", style: "points", colour: 6,
       x: trialled.map((row) => row.interval_s as number),
-      y: trialled.map((row) => row.error_m * (row.confirm as Confirm).rms_over_true),
+      y: trialled.map((row) => row.error_m * (row.confirm as Confirm).error_over_true),
       names: trialled.map((row) => `${nameOf(row)}, ${withUnit(row.limit_m, "m")}`),
     });
   }

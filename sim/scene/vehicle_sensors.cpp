@@ -1,4 +1,4 @@
-#include "leeway/sim/sensors/vehicle_sensors.hpp"
+#include "leeway/sim/scene/vehicle_sensors.hpp"
 
 #include <cmath>
 
