@@ -63,8 +63,8 @@ CLI::Option* add_range_option(CLI::App& app, Value& range) {
   return app
       .add_option(
           "--range", range,
-          "where in the range of a Table 1 class: its ends, or the geometric mean (default: "
-          "mid)")
+          "where in the range of a Table 1 class: its ends, or the geometric mean (default: mid); "
+          "of marine the high end is the paper's bound, the low end a quarter of it")
       ->transform(named<RangeEnd>());
 }
 

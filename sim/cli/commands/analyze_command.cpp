@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "leeway/logs/csv_writer.hpp"
+#include "leeway/sim/analysis/coast.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/pages/series_table.hpp"
@@ -119,12 +120,41 @@ void print_sources(std::vector<Source> sources) {
   table.print();
 }
 
-void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
+/// Whether the scene's limit is kept: before every fix that counts, and at the end of each outage.
+void print_limit(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
+                 const std::vector<sim::Coast>& coasts) {
+  const double limit_m = scene.limit.limit_m;
+  const bool keeps = r.true_m <= limit_m;
+  fmt::print("Keeps {:g} m there: {}.\n", limit_m, keeps ? "yes" : "no");
+  for (const sim::Coast& c : coasts) {
+    fmt::print("Outage of {:g} s at {:g} s: {:.3g} m at its end, {:.1f} s; keeps {:g} m: {}\n",
+               c.outage.duration_s, c.outage.start_s, c.end_error_m, c.end_s, limit_m,
+               c.keeps_limit() ? "yes"
+                               : fmt::format("no, for {:.1f} s only", c.coast_s));
+  }
+}
+
+/// Down, without a fix, an error grows by gravity's gradient: e-fold in sqrt(R / 2 g), 570 s. Source:
+/// Groves (2013) section 5.7.2.
+void print_vertical_channel(const sim::Scene& scene) {
+  constexpr double kEfoldS = 570.0;
+  const bool has_barometer = scene.vehicle && scene.vehicle->barometer;
+  if (scene.gnss.interval_s < kEfoldS || has_barometer) return;
+  fmt::print(
+      "Fixes are further apart than the {:g} s in which an error of height grows e-fold by itself:\n"
+      "the height, and all that hangs on it, is of no use before a fix. A barometer holds it.\n",
+      kEfoldS);
+}
+
+void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
+                  const std::vector<sim::Coast>& coasts) {
   fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
              scene.imu_name, scene.gnss.interval_s, scene.duration_s);
   fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
              name(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
   fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
+  print_limit(scene, r, coasts);
+  print_vertical_channel(scene);
   if (r.settled) {
     fmt::print("Settled since {:g} s: every sigma repeats to 0.1 %.\n\n", r.settled_s);
   } else {
@@ -135,7 +165,21 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r) {
   print_sources(sources_of(r.error_budget));
 }
 
-Json results_json(const sim::CovarianceAnalysis& r) {
+Json outages_json(const std::vector<sim::Coast>& coasts) {
+  Json rows = Json::array();
+  for (const sim::Coast& c : coasts) {
+    rows.push_back({{"start_s", c.outage.start_s},
+                    {"duration_s", c.outage.duration_s},
+                    {"end_s", c.end_s},
+                    {"end_error_m", c.end_error_m},
+                    {"keeps_limit", c.keeps_limit()},
+                    {"coast_s", c.coast_s}});
+  }
+  return rows;
+}
+
+Json results_json(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
+                  const std::vector<sim::Coast>& coasts) {
   std::vector<Source> sources = sources_of(r.error_budget);
   const double total_m2 = sources.back().horizontal_m2();
   sources.pop_back();
@@ -153,6 +197,8 @@ Json results_json(const sim::CovarianceAnalysis& r) {
           {"true_drms_m", r.true_drms_m},
           {"claimed_drms_m", r.claimed_drms_m},
           {"worst_s", r.worst_s},
+          {"keeps_limit", r.true_m <= scene.limit.limit_m},
+          {"outages", outages_json(coasts)},
           {"window_s", r.window_s},
           {"fixes", r.fixes},
           {"settled", r.settled},
@@ -185,14 +231,16 @@ int run(const AnalyzeChoice& options) {
       progress.show(point.t_s / scene.duration_s);
     };
   }
-  const sim::CovarianceAnalysis result = sim::analyze(scene, sim::error_track(scene), config);
+  const sim::ErrorTrack track = sim::error_track(scene);
+  const sim::CovarianceAnalysis result = sim::analyze(scene, track, config);
+  const std::vector<sim::Coast> coasts = sim::coasts(scene, track, scene.limit.limit_m);
   if (moments) writing([&] { moments->close(); });
   if (!options.error_budget.empty()) {
     write_file(options.error_budget, error_budget_csv(sources_of(result.error_budget)));
   }
   show(
-      options.output, answer_json("analyze", scene_json(scene), results_json(result)),
-      [&] { print_tables(scene, result); },
+      options.output, answer_json("analyze", scene_json(scene), results_json(scene, result, coasts)),
+      [&] { print_tables(scene, result, coasts); },
       [&] {
         return Json{{"moments", shown.json()}};
       });
