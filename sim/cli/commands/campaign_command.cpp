@@ -115,8 +115,12 @@ void print_tables(const sim::Scene& scene, const sim::CampaignResult& r) {
 /// What was computed now, and how fast.
 void print_speed(const sim::Scene& scene, const sim::CampaignResult& r, int cores,
                  double elapsed_s) {
+  if (r.repeated > 0) fmt::print("Lines of journals that repeat a trial: {}\n", r.repeated);
   const std::int64_t run = r.trials - r.resumed;
-  if (r.repeated > 0) fmt::print("Journals: {} lines repeat the trial of another\n", r.repeated);
+  if (run == 0) {
+    fmt::print("Computed: 0 trials, {} from the journal\n", r.resumed);
+    return;
+  }
   const auto steps = static_cast<double>(
       sim::increment_count(scene.trajectory, scene.imu_rate_hz, scene.duration_s));
   fmt::print(

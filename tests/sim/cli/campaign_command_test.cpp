@@ -207,7 +207,7 @@ TEST_CASE("with --merge-only, seeds that no journal has are named, nothing is ru
   CHECK(part.exit_code == 2);
   CHECK(contains(part.err, "2 of 9 trials are missing, seeds 8 to 9: run their jobs again"));
   CHECK(contains(part.out, "7 trials, seeds 1 to 9 without 8 to 9"));
-  CHECK(contains(part.out, "1 lines repeat the trial of another"));
+  CHECK(contains(part.out, "Lines of journals that repeat a trial: 1"));
   const auto results = leeway(campaign(9) + both + "--merge-only --json").json().at("results");
   CHECK(results.at("trials") == 7);
   CHECK(results.at("seeds_missing") == nlohmann::json::parse("[[8, 9]]"));
