@@ -12,7 +12,7 @@
 namespace leeway::sim {
 namespace {
 
-std::string packed_trial(const ScoredTrial& trial) {
+std::string packed_trial(const SharedTrial& trial) {
   std::string bytes = line_of(trial.score) + '\n';
   const std::size_t text = bytes.size();
   bytes.resize(text + trial.of_fixes.size() * sizeof(double));
@@ -22,8 +22,8 @@ std::string packed_trial(const ScoredTrial& trial) {
   return bytes;
 }
 
-ScoredTrial scored_trial_of(const std::string& bytes) {
-  ScoredTrial trial;
+SharedTrial shared_trial_of(const std::string& bytes) {
+  SharedTrial trial;
   const std::size_t text = bytes.find('\n') + 1;
   parse_line(bytes.substr(0, text - 1), trial.score);
   trial.of_fixes.resize((bytes.size() - text) / sizeof(double));
@@ -42,13 +42,13 @@ void require_same_scene(std::uint64_t fingerprint, const Ranks& ranks) {
                     1);
 }
 
-std::vector<ScoredTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fix,
+std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fix,
                                        const Ranks& ranks,
                                        const std::function<void(double)>& progress, int threads) {
   require_same_scene(fingerprint(plan), ranks);
   const Scene& scene = plan.scene();
   const auto run = [&](std::size_t k) {
-    ScoredTrial trial;
+    SharedTrial trial;
     std::size_t fix = 0;
     trial.score = run_trial(plan, scene.first_seed + k, [&](const TrialEpoch& epoch) {
       if (const std::optional<double> value = of_fix(fix++, epoch)) {
@@ -57,10 +57,10 @@ std::vector<ScoredTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fi
     });
     return packed_trial(trial);
   };
-  std::vector<ScoredTrial> trials;
+  std::vector<SharedTrial> trials;
   for (const std::string& bytes :
        shared_work(static_cast<std::size_t>(scene.trials), run, ranks, progress, threads)) {
-    trials.push_back(scored_trial_of(bytes));
+    trials.push_back(shared_trial_of(bytes));
   }
   return trials;
 }

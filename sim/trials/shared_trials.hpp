@@ -14,7 +14,7 @@
 namespace leeway::sim {
 
 /// What one trial leaves: its sums, and a number for each fix that was asked for one.
-struct ScoredTrial {
+struct SharedTrial {
   TrialScore score{};
   std::vector<double> of_fixes{};
 };
@@ -27,7 +27,7 @@ using OfFix = std::function<std::optional<double>(std::size_t k, const TrialEpoc
 /// @param progress  called from the calling thread with the fraction done of this rank's part
 /// @throws Error of a trial, the same on every rank; RankFailure when another rank stopped, or has
 /// another scene than the first.
-std::vector<ScoredTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fix,
+std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fix,
                                        const Ranks& ranks,
                                        const std::function<void(double)>& progress = {},
                                        int threads = 0);

@@ -25,7 +25,7 @@ Scene one_minute(int trials) {
   return scene;
 }
 
-std::vector<ScoredTrial> errors_at_scored_fixes(const TrialPlan& plan, const Ranks& ranks) {
+std::vector<SharedTrial> errors_at_scored_fixes(const TrialPlan& plan, const Ranks& ranks) {
   const auto error = [&plan](std::size_t k, const TrialEpoch& epoch) -> std::optional<double> {
     if (!plan.fixes()[k].scored) return {};
     return epoch.error_h_m;
