@@ -89,7 +89,8 @@ void note(std::string_view text) {
 }
 
 Progress::Progress(std::string label)
-    : label_(std::move(label)), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+    : label_(std::move(label)),
+      is_terminal_(sim::Ranks::launched_first() && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   if (drawn_) std::fputs("\r\033[K", stderr);

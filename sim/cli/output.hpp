@@ -65,7 +65,7 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 void note(std::string_view text);
 
 /// A bar on stderr, where that is a terminal, once the work has taken a second, with the time to
-/// go. Gone afterwards.
+/// go. Gone afterwards. Of several ranks, the first shows it.
 class Progress {
  public:
   explicit Progress(std::string label);

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "leeway/earth/error.hpp"
@@ -13,9 +16,11 @@
 #include "leeway/sim/trials/trial.hpp"
 #include "leeway/sim/trials/trial_journal.hpp"
 #include "lib/earth/field_walk.hpp"
+#include "sim/tools/shared_work.hpp"
 #include "sim/trials/campaign_sums.hpp"
 #include "sim/trials/fingerprint.hpp"
-#include "sim/trials/seed_set.hpp"
+#include "sim/trials/journals/journal_merge.hpp"
+#include "sim/trials/shared_trials.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -31,6 +36,12 @@ void validate(const Scene& scene, const CampaignOptions& options) {
     throw Error("campaign: first_seed is " + std::to_string(scene.first_seed) +
                 ", must leave room for the seeds of all trials below 2^64");
   }
+  if (std::ranges::count(options.journals, std::filesystem::path()) > 0) {
+    throw Error("campaign: one of the journals has no name; leave it out");
+  }
+  if (options.merge_only && options.journals.empty()) {
+    throw Error("campaign: merge_only needs journals; name at least one");
+  }
 }
 
 /// The trials still to run, the same list on every rank.
@@ -43,6 +54,7 @@ class Todo {
   }
 
   std::uint64_t count() const { return count_; }
+  const std::vector<SeedRange>& gaps() const { return gaps_; }
 
   /// @pre index < count().
   std::uint64_t seed(std::uint64_t index) const {
@@ -60,22 +72,14 @@ std::string bytes_of(const std::vector<SeedRange>& gaps) {
   return {reinterpret_cast<const char*>(gaps.data()), gaps.size() * sizeof(SeedRange)};
 }
 
-/// Adds the trials of the scene that the journals hold, each once. @returns those they do not.
-std::vector<SeedRange> resume(const Scene& scene, const CampaignOptions& options,
-                              std::uint64_t scene_fingerprint, CampaignSums& sums) {
-  const SeedRange all{scene.first_seed, static_cast<std::uint64_t>(scene.trials)};
-  SeedSet finished;
-  if (options.journal.empty()) return finished.missing(all);
-  for (const auto& path : existing_journals(options.journal)) {
-    read_journal(path, scene_fingerprint, [&](const TrialScore& score) {
-      const bool wanted = score.seed - all.first < all.count;
-      if (wanted && finished.insert(score.seed)) sums.add(score);
-    });
-  }
-  return finished.missing(all);
+/// What the journals hold of the scene's trials.
+MergedJournals finished_trials(const Scene& scene, const CampaignOptions& options,
+                               std::uint64_t scene_fingerprint) {
+  return merge_journals(options.journals, !options.merge_only, scene_fingerprint,
+                        {scene.first_seed, static_cast<std::uint64_t>(scene.trials)});
 }
 
-/// The sums of all ranks together, at the first.
+/// The sums of all ranks together, on each.
 CampaignSums of_all_ranks(CampaignSums sums, const Ranks& ranks) {
   std::string bytes(sizeof sums, '\0');
   std::memcpy(bytes.data(), &sums, sizeof sums);
@@ -84,7 +88,7 @@ CampaignSums of_all_ranks(CampaignSums sums, const Ranks& ranks) {
     std::memcpy(&others, others_bytes.data(), sizeof others);
     sums.add(others);
   });
-  return sums;
+  return ranks.from_first(sums);
 }
 
 /// Calls progress with what is finished, and how long the rest takes at the pace so far.
@@ -101,29 +105,19 @@ std::function<void(std::size_t)> reporter(const CampaignOptions& options, const 
   };
 }
 
-}  // namespace
-
-CampaignResult campaign(const Scene& scene, const CampaignOptions& options, const Ranks& ranks) {
-  validate(scene, options);
-  const int threads = options.threads > 0 || ranks.count() == 1 ? options.threads : 1;
-  const TrialPlan plan(scene, options.score_last_s, threads);
-  const std::uint64_t scene_fingerprint = fingerprint(plan);
-
-  // The first reads all journals before any rank adds to its own.
-  CampaignSums sums;
-  std::string gaps;
-  if (ranks.is_first()) gaps = bytes_of(resume(scene, options, scene_fingerprint, sums));
-  const Todo todo(ranks.from_first(gaps));
-  const std::int64_t resumed = sums.trials;
-
+/// Runs this rank's part of the missing trials, keeps them and adds them to the sums.
+void run_missing(const TrialPlan& plan, const CampaignOptions& options, const Todo& todo,
+                 const Ranks& ranks, CampaignSums& sums) {
+  const int threads = threads_of_rank(options.threads, ranks);
   std::optional<TrialJournal> journal;
-  if (!options.journal.empty()) {
-    journal.emplace(journal_of_rank(options.journal, ranks.rank(), ranks.count()),
-                    scene_fingerprint);
+  if (!options.journals.empty()) {
+    journal.emplace(journal_of_rank(options.journals[0], ranks.rank(), ranks.count()),
+                    fingerprint(plan));
   }
   const auto rank = static_cast<std::uint64_t>(ranks.rank());
   const auto count = static_cast<std::uint64_t>(ranks.count());
   const std::uint64_t mine = (todo.count() + count - 1 - rank) / count;
+  const double before = static_cast<double>(sums.trials) / static_cast<double>(count);
   std::mutex mutex;
   parallel_for(
       mine,
@@ -133,12 +127,28 @@ CampaignResult campaign(const Scene& scene, const CampaignOptions& options, cons
         if (journal) journal->append(score);
         sums.add(score);
       },
-      reporter(options, ranks, static_cast<double>(resumed) / static_cast<double>(count),
-               static_cast<double>(mine)),
-      threads);
+      reporter(options, ranks, before, static_cast<double>(mine)), threads);
+}
 
-  CampaignResult result = result_of(of_all_ranks(sums, ranks));
+}  // namespace
+
+CampaignResult campaign(const Scene& scene, const CampaignOptions& options, const Ranks& ranks) {
+  validate(scene, options);
+  const TrialPlan plan(scene, options.score_last_s, threads_of_rank(options.threads, ranks));
+  require_same_scene(fingerprint(plan), ranks);
+
+  // The first reads all journals before any rank adds to its own.
+  MergedJournals merged;
+  if (ranks.is_first()) merged = finished_trials(scene, options, fingerprint(plan));
+  const std::int64_t resumed = ranks.from_first(merged.sums.trials);
+  const Todo todo(ranks.from_first(bytes_of(merged.missing)));
+  if (!options.merge_only) run_missing(plan, options, todo, ranks, merged.sums);
+
+  CampaignResult result = result_of(of_all_ranks(merged.sums, ranks));
   result.resumed = resumed;
+  if (options.merge_only) result.missing = todo.gaps();
+  result.repeated = merged.repeated;
+  result.damaged = std::move(merged.damaged);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include "leeway/sim/trials/campaign.hpp"
 #include "leeway/sim/trials/trial_journal.hpp"
 #include "sim/cli/command.hpp"
+#include "sim/cli/on_ranks.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
@@ -15,8 +16,16 @@ namespace {
 struct CampaignChoice {
   SceneChoice scene{};
   sim::CampaignOptions campaign{};
+  std::vector<std::string> journals{};
   Output output{};
 };
+
+/// Pairs of the first and the last of seeds that follow each other.
+Json seeds_json(const std::vector<sim::SeedRange>& ranges) {
+  Json json = Json::array();
+  for (const sim::SeedRange& r : ranges) json.push_back({r.first, r.first + r.count - 1});
+  return json;
+}
 
 Json results_json(const sim::CampaignResult& r) {
   return {{"trials", r.trials},
@@ -35,7 +44,20 @@ Json results_json(const sim::CampaignResult& r) {
           {"trials_diverged", r.diverged},
           {"trials_not_finite", r.not_finite},
           {"worst_horizontal_m", r.worst_horizontal_m},
-          {"worst_seed", r.worst_seed}};
+          {"worst_seed", r.worst_seed},
+          {"seeds_missing", seeds_json(r.missing)}};
+}
+
+/// Seeds as people write them: "3, 7 to 9", of many the first few.
+std::string seeds_text(const std::vector<sim::SeedRange>& ranges) {
+  constexpr std::size_t kMostShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(ranges.size(), kMostShown); ++i) {
+    const auto& [first, count] = ranges[i];
+    text += (i > 0 ? ", " : "") + std::to_string(first);
+    if (count > 1) text += " to " + std::to_string(first + count - 1);
+  }
+  return ranges.size() > kMostShown ? text + ", .." : text;
 }
 
 void print_errors(const sim::CampaignResult& r) {
@@ -78,8 +100,9 @@ void print_consistency(const sim::Scene& scene, const sim::CampaignResult& r) {
 void print_tables(const sim::Scene& scene, const sim::CampaignResult& r) {
   fmt::print("Scene '{}': {} s, IMU {} at {} Hz, fixes every {} s\n", scene.name, scene.duration_s,
              scene.imu_name, scene.imu_rate_hz, scene.gnss.interval_s);
-  fmt::print("{} trials, seeds {} to {}, {} scored epochs\n\n", r.trials, scene.first_seed,
-             scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1, r.epochs);
+  fmt::print("{} trials, seeds {} to {}{}, {} scored epochs\n\n", r.trials, scene.first_seed,
+             scene.first_seed + static_cast<std::uint64_t>(scene.trials) - 1,
+             r.missing.empty() ? "" : " without " + seeds_text(r.missing), r.epochs);
   print_errors(r);
   fmt::print("\n");
   print_consistency(scene, r);
@@ -92,7 +115,12 @@ void print_tables(const sim::Scene& scene, const sim::CampaignResult& r) {
 /// What was computed now, and how fast.
 void print_speed(const sim::Scene& scene, const sim::CampaignResult& r, int cores,
                  double elapsed_s) {
+  if (r.repeated > 0) fmt::print("Lines of journals that repeat a trial: {}\n", r.repeated);
   const std::int64_t run = r.trials - r.resumed;
+  if (run == 0) {
+    fmt::print("Computed: 0 trials, {} from the journal\n", r.resumed);
+    return;
+  }
   const auto steps = static_cast<double>(
       sim::increment_count(scene.trajectory, scene.imu_rate_hz, scene.duration_s));
   fmt::print(
@@ -162,14 +190,12 @@ Json fan_json(const sim::Scene& scene, int threads) {
   }
 }
 
-/// The first rank shows the progress.
-sim::CampaignResult result_of(const sim::Scene& scene, sim::CampaignOptions options,
+sim::CampaignResult result_of(const sim::Scene& scene, const CampaignChoice& choice,
                               const sim::Ranks& ranks) {
-  std::optional<Progress> bar;
-  if (ranks.is_first()) {
-    bar.emplace("campaign");
-    options.progress = [&bar](const auto& done) { bar->show(done.fraction, done.remaining_s); };
-  }
+  sim::CampaignOptions options = choice.campaign;
+  options.journals.assign(choice.journals.begin(), choice.journals.end());
+  Progress bar("campaign");
+  options.progress = [&bar](const auto& done) { bar.show(done.fraction, done.remaining_s); };
   try {
     return sim::campaign(scene, options, ranks);
   } catch (const sim::JournalFailure& error) {
@@ -177,12 +203,31 @@ sim::CampaignResult result_of(const sim::Scene& scene, sim::CampaignOptions opti
   }
 }
 
+/// What is odd about the journals, and what to do.
+void note_journals(const sim::Scene& scene, const CampaignChoice& choice,
+                   const sim::CampaignResult& r) {
+  const bool merges_only = choice.campaign.merge_only;
+  for (const sim::JournalDamage& d : r.damaged) {
+    note(fmt::format("{}:{}: damaged{}; its trial {}", d.path.string(), d.first_line,
+                     d.lines > 1 ? fmt::format(", and {} more lines", d.lines - 1) : "",
+                     merges_only ? "is missing, unless another line has it"
+                                 : "was run again, unless another line has it"));
+  }
+  if (r.missing.empty()) return;
+  note(
+      fmt::format("{} of {} trials are missing, seeds {}: run their jobs again, or this command "
+                  "without --merge-only",
+                  scene.trials - r.trials, scene.trials, seeds_text(r.missing)));
+}
+
 int run_on(const CampaignChoice& options, const sim::Ranks& ranks) {
   using Clock = std::chrono::steady_clock;
   const sim::Scene scene = scene_of(options.scene);
   const auto start = Clock::now();
-  const sim::CampaignResult result = result_of(scene, options.campaign, ranks);
-  if (!ranks.is_first()) return kSuccess;
+  const sim::CampaignResult result = result_of(scene, options, ranks);
+  const int exit_code = result.epochs > 0 && result.missing.empty() ? kSuccess : kNoAnswer;
+  if (!ranks.is_first()) return exit_code;
+  note_journals(scene, options, result);
   Json input = scene_json(scene);
   if (options.campaign.score_last_s) input["score_last_s"] = *options.campaign.score_last_s;
   const auto print = [&] {
@@ -190,30 +235,14 @@ int run_on(const CampaignChoice& options, const sim::Ranks& ranks) {
     print_speed(scene, result, cores_of(options, ranks),
                 std::chrono::duration<double>(Clock::now() - start).count());
   };
-  show(options.output, answer_json("campaign", std::move(input), results_json(result)), print,
-       [&] { return fan_json(scene, options.campaign.threads); });
-  return result.epochs > 0 ? kSuccess : kNoAnswer;
+  show(options.output, answer_json("campaign", std::move(input), results_json(result)), print, [&] {
+    return options.campaign.merge_only ? Json::object() : fan_json(scene, options.campaign.threads);
+  });
+  return exit_code;
 }
 
-int exit_code_of(const std::exception& error) {
-  if (const auto* other = dynamic_cast<const sim::RankFailure*>(&error)) return other->exit_code;
-  const bool is_unusable = dynamic_cast<const Error*>(&error) != nullptr;
-  return is_unusable && dynamic_cast<const WriteFailure*>(&error) == nullptr ? kUnusable : kFailure;
-}
-
-/// Where there are several ranks, all end with the first error, and the first rank says why.
 int run(const CampaignChoice& options) {
-  const sim::Ranks ranks;
-  try {
-    return run_on(options, ranks);
-  } catch (const std::exception& error) {
-    if (ranks.count() == 1) throw;
-    if (ranks.is_first()) {
-      std::fflush(stdout);
-      fmt::print(stderr, "leeway: {}\n", error.what());
-    }
-    ranks.stop(error.what(), exit_code_of(error));
-  }
+  return on_ranks([&options](const sim::Ranks& ranks) { return run_on(options, ranks); });
 }
 
 void add_options(CLI::App& app, CampaignChoice& options) {
@@ -221,8 +250,15 @@ void add_options(CLI::App& app, CampaignChoice& options) {
   add_trial_options(app, options.scene, 10'000'000, "in place of the scene's");
   sim::CampaignOptions& c = options.campaign;
   add_threads_option(app, c.threads, "of this process, or of each rank under mpirun or srun; ");
-  add_file_option(app, "--journal", c.journal,
-                  "keep finished trials here, and do not run again those that are");
+  CLI::Option* journals =
+      app.add_option("--journal", options.journals,
+                     "keep finished trials here, and do not run again those that are; several, "
+                     "with commas or spaces, are of separate jobs: new trials go to the first")
+          ->type_name("FILE")
+          ->delimiter(',');
+  app.add_flag("--merge-only", c.merge_only,
+               "run nothing: answer from the trials in the journals, and name the missing seeds")
+      ->needs(journals);
   app.add_option("--score-last-s", c.score_last_s,
                  "score fixes this close to the scene's end, s (default: as the scene's limit)")
       ->check(positive());
@@ -234,7 +270,8 @@ const Command<CampaignChoice> kCampaign{
     "Results are the same to the bit on any number of threads and ranks.\n"
     "Examples:\n"
     "  leeway campaign --scene car.toml --trials 1000 --journal car.journal\n"
-    "  mpirun -n 4 leeway campaign --scene car.toml --trials 1000 --journal car.journal",
+    "  mpirun -n 4 leeway campaign --scene car.toml --trials 1000 --journal car.journal\n"
+    "  leeway campaign --scene car.toml --trials 1000 --journal job-*.journal --merge-only",
     add_options, run};
 
 }  // namespace

@@ -168,6 +168,102 @@ TEST_CASE("ranks keep a journal each, and any number of them resumes from all" *
   CHECK(contains(leeway(campaign(24) + journal, mpirun(2)).out, "Computed: 0 trials"));
 }
 
+TEST_CASE("array jobs with a journal each, merged, are one campaign to the byte" *
+          doctest::test_suite("heavy")) {
+  const TempDir dir;
+  const auto job = [&](int first_seed, int trials, const std::string& name) {
+    return leeway(campaign(trials) + "--first-seed " + std::to_string(first_seed) + " --journal " +
+                  quoted(dir / name));
+  };
+  for (const int id : {0, 1, 2}) {
+    CHECK(job(1 + 8 * id, 8, "job-" + std::to_string(id)).exit_code == 0);
+  }
+  const std::string single = leeway(campaign(24) + "--json").out;
+  const std::string commas = "--journal " + quoted(dir / "job-0") + "," + quoted(dir / "job-1") +
+                             "," + quoted(dir / "job-2");
+  CHECK(leeway(campaign(24) + commas + " --json").out == single);
+  CHECK(leeway(campaign(24) + commas + " --merge-only --json").out == single);
+  const std::string spaces = "--journal " + (dir / "job-").string() + "[0-2]";
+  const Outcome merged = leeway(campaign(24) + spaces);
+  CHECK(merged.exit_code == 0);
+  CHECK(merged.err.empty());
+  CHECK(contains(merged.out, "Computed: 0 trials"));
+  CHECK(contains(merged.out, "24 from the journal"));
+  if (!has_mpi()) return;
+  CHECK(leeway(campaign(24) + commas + " --merge-only --json", mpirun(2)).out == single);
+}
+
+TEST_CASE("with --merge-only, seeds that no journal has are named, nothing is run or written") {
+  const TempDir dir;
+  const auto job = [&](int first_seed, const std::string& name) {
+    leeway(campaign(4) + "--first-seed " + std::to_string(first_seed) + " --journal " +
+           quoted(dir / name));
+  };
+  job(1, "a");
+  job(4, "b");
+  const std::string before = read_file(dir / "a");
+  const std::string both = "--journal " + quoted(dir / "a") + "," + quoted(dir / "b") + " ";
+  const Outcome part = leeway(campaign(9) + both + "--merge-only");
+  CHECK(part.exit_code == 2);
+  CHECK(contains(part.err, "2 of 9 trials are missing, seeds 8 to 9: run their jobs again"));
+  CHECK(contains(part.out, "7 trials, seeds 1 to 9 without 8 to 9"));
+  CHECK(contains(part.out, "Lines of journals that repeat a trial: 1"));
+  const auto results = leeway(campaign(9) + both + "--merge-only --json").json().at("results");
+  CHECK(results.at("trials") == 7);
+  CHECK(results.at("seeds_missing") == nlohmann::json::parse("[[8, 9]]"));
+  CHECK(read_file(dir / "a") == before);
+  // Run now, they go to the first.
+  const Outcome whole = leeway(campaign(9) + both + "--json");
+  CHECK(whole.exit_code == 0);
+  CHECK(whole.json().at("results").at("seeds_missing").empty());
+  CHECK(lines_in(dir / "a") == 1 + 4 + 2);
+  CHECK(lines_in(dir / "b") == 1 + 4);
+}
+
+TEST_CASE("journals that do not go together say what to do") {
+  const TempDir dir;
+  const auto merge = [&](const std::string& names) {
+    return leeway(campaign(4) + "--merge-only --journal " + names);
+  };
+  const std::string a = quoted(dir / "a");
+  leeway(campaign(4) + "--journal " + a);
+  leeway(campaign(4) + "--imu marine --journal " + quoted(dir / "marine"));
+  const Outcome other = merge(a + "," + quoted(dir / "marine"));
+  CHECK(other.exit_code == 1);
+  CHECK(contains(other.err, "marine: is the journal of another scene"));
+  CHECK(contains(other.err, "leave it out"));
+  const Outcome gone = merge(a + "," + quoted(dir / "gone"));
+  CHECK(gone.exit_code == 1);
+  CHECK(contains(gone.err, "gone: is not there"));
+
+  std::string text = read_file(dir / "a");
+  text[text.find("\n2 ") + 3] = 'x';
+  dir.file("hit", text);
+  const Outcome hit = merge(quoted(dir / "hit"));
+  CHECK(hit.exit_code == 2);
+  CAPTURE(hit.err);
+  CHECK(contains(hit.err, ": damaged; its trial is missing"));
+  CHECK(contains(hit.err, "1 of 4 trials are missing, seeds 2:"));
+  CHECK(contains(leeway(campaign(4) + "--journal " + quoted(dir / "hit")).err, "was run again"));
+
+  const Outcome alone = leeway(campaign(4) + "--merge-only");
+  CHECK(alone.exit_code == 1);
+  CHECK(contains(alone.err, "--journal"));
+}
+
+TEST_CASE("ranks with other scenes end, and say so" * doctest::test_suite("heavy")) {
+  if (!has_mpi()) {
+    MESSAGE("skipped: no mpirun, or built without MPI");
+    return;
+  }
+  const Outcome outcome =
+      leeway(campaign(20) + "--json : -n 1 " + quoted(LEEWAY_PROGRAM) + " " + campaign(20, 200),
+             mpirun(1));
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.out.empty());
+  CHECK(contains(outcome.err, "rank 1 has another scene than the first"));
+}
+
 TEST_CASE("a rank that fails ends all, with one message and its exit code" *
           doctest::test_suite("heavy")) {
   if (!has_mpi()) {

@@ -137,7 +137,7 @@ TEST_CASE("any number of threads gives the same bits" * doctest::test_suite("hea
 TEST_CASE("a journal gives back what it holds, to the bit, and takes what is new" *
           doctest::test_suite("heavy")) {
   const TempDir dir;
-  const CampaignOptions options{.threads = 2, .journal = dir / "journal"};
+  const CampaignOptions options{.threads = 2, .journals = {dir / "journal"}};
   CHECK(campaign(short_case(7), options).resumed == 0);
   const CampaignResult more = campaign(short_case(20), options);
   CHECK(more.resumed == 7);
@@ -156,19 +156,65 @@ TEST_CASE("the journals of ranks are read too, and a trial in two of them counts
           doctest::test_suite("heavy")) {
   const TempDir dir;
   Scene scene = short_case(4);
-  campaign(scene, {.journal = dir / "journal.rank0"});
+  campaign(scene, {.journals = {dir / "journal.rank0"}});
   scene.first_seed = 3;
-  campaign(scene, {.journal = dir / "journal.rank12"});
-  campaign(scene, {.journal = dir / "journal.rank12.old"});  // not one of them
+  campaign(scene, {.journals = {dir / "journal.rank12"}});
+  campaign(scene, {.journals = {dir / "journal.rank12.old"}});  // not one of them
   scene = short_case(8);
-  const CampaignResult r = campaign(scene, {.journal = dir / "journal"});
+  const CampaignResult r = campaign(scene, {.journals = {dir / "journal"}});
   CHECK(r.resumed == 6);
   CHECK(bits(r) == bits(campaign(scene)));
 }
 
+TEST_CASE("the journals of separate jobs give what one run gives, to the bit" *
+          doctest::test_suite("heavy")) {
+  const TempDir dir;
+  const std::vector<std::filesystem::path> journals{dir / "a", dir / "b", dir / "c"};
+  const auto run_job = [&](std::uint64_t first_seed, int trials,
+                           const std::filesystem::path& file) {
+    Scene scene = short_case(trials);
+    scene.first_seed = first_seed;
+    campaign(scene, {.journals = {file}});
+  };
+  run_job(1, 4, journals[0]);
+  run_job(3, 4, journals[1]);   // 3 and 4 a second time
+  run_job(10, 5, journals[2]);  // 13 and 14 are not asked for
+  const Scene whole = short_case(12);
+
+  const CampaignResult there = campaign(whole, {.journals = journals, .merge_only = true});
+  CHECK(there.trials == 9);
+  CHECK(there.resumed == 9);
+  CHECK(there.repeated == 2);
+  REQUIRE(there.missing.size() == 1);
+  CHECK(there.missing[0].first == 7);
+  CHECK(there.missing[0].count == 3);
+
+  const CampaignResult merged = campaign(whole, {.journals = journals});
+  CHECK(merged.resumed == 9);
+  CHECK(merged.missing.empty());
+  CHECK(bits(merged) == bits(campaign(whole)));
+  // What was missing is in the first now.
+  const CampaignResult again = campaign(whole, {.journals = journals, .merge_only = true});
+  CHECK(again.missing.empty());
+  CHECK(bits(again) == bits(merged));
+}
+
+TEST_CASE("merging only, nothing is written, and every journal must be there") {
+  const TempDir dir;
+  const auto merge = [&] {
+    campaign(short_case(1), {.journals = {dir / "new"}, .merge_only = true});
+  };
+  CHECK(contains(message_of<Error>(merge), "new: is not there; to merge only"));
+  CHECK(!std::filesystem::exists(dir / "new"));
+  CHECK(contains(message_of<Error>([] { campaign(short_case(1), {.merge_only = true}); }),
+                 "needs journals"));
+  CHECK(contains(message_of<Error>([] { campaign(short_case(1), {.journals = {""}}); }),
+                 "has no name"));
+}
+
 TEST_CASE("the journal of another scene is refused, whatever differs") {
   const TempDir dir;
-  const CampaignOptions options{.journal = dir / "journal"};
+  const CampaignOptions options{.journals = {dir / "journal"}};
   campaign(short_case(1), options);
   std::vector<Scene> others(8, short_case(1));
   others[0].gnss.interval_s = 20.0;
@@ -196,7 +242,7 @@ TEST_CASE("the journal of another scene is refused, whatever differs") {
 
 TEST_CASE("a trial that cannot be kept stops the campaign") {
   const TempDir dir;
-  const auto run = [&] { campaign(short_case(2), {.journal = dir / "no folder" / "journal"}); };
+  const auto run = [&] { campaign(short_case(2), {.journals = {dir / "no folder" / "journal"}}); };
   CHECK(
       contains(message_of<JournalFailure>(run), "no folder/journal: the journal cannot be opened"));
 }
@@ -204,7 +250,7 @@ TEST_CASE("a trial that cannot be kept stops the campaign") {
 TEST_CASE("progress ends at 1, counts what was resumed, and says how long the rest takes") {
   const TempDir dir;
   std::vector<CampaignProgress> seen;
-  CampaignOptions options{.threads = 1, .journal = dir / "journal"};
+  CampaignOptions options{.threads = 1, .journals = {dir / "journal"}};
   options.progress = [&](const CampaignProgress& p) { seen.push_back(p); };
   campaign(short_case(5), options);
   seen.clear();

@@ -2,8 +2,10 @@
 /// The processes that share one piece of work: MPI ranks, or this process alone.
 #pragma once
 
+#include <cstring>
 #include <functional>
 #include <string>
+#include <type_traits>
 
 #include "leeway/earth/error.hpp"
 
@@ -39,6 +41,18 @@ class Ranks {
 
   /// The bytes of the first rank, on every rank. @param bytes  used on the first only
   std::string from_first(const std::string& bytes) const;
+
+  /// The value of the first rank, on every rank.
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value> Value from_first(const Value& value)
+  const {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    bytes = from_first(bytes);
+    Value first;
+    std::memcpy(&first, bytes.data(), sizeof first);
+    return first;
+  }
 
   /// Transfer of bytes from the other ranks to the first, which calls f with those of each rank, in
   /// the order of arrival.

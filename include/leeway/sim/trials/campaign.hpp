@@ -8,9 +8,12 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/tools/ranks.hpp"
+#include "leeway/sim/trials/seed_range.hpp"
+#include "leeway/sim/trials/trial_journal.hpp"
 
 namespace leeway::sim {
 
@@ -24,16 +27,17 @@ struct CampaignProgress {
 struct CampaignOptions {
   int threads{0};                        ///< 0: all processors for a process alone, one per rank
   std::optional<double> score_last_s{};  ///< as TrialPlan
-  /// Finished trials are kept here, and not run again by a campaign with the same journal: of any
-  /// number of trials, threads and ranks. Empty: nowhere.
-  std::filesystem::path journal{};
+  /// Finished trials are kept in the first, and those in any of them are not run again: trials of
+  /// any number of jobs, threads and ranks. The first alone may be new. Empty: nothing is kept.
+  std::vector<std::filesystem::path> journals{};
+  bool merge_only{false};  ///< runs and writes nothing: the answer is of what the journals hold
   std::function<void(const CampaignProgress&)> progress{};  ///< called from the calling thread
 };
 
 /// Figures of a campaign. Ratios are 1 when the filter is honest, NaN where no trial was scored.
 struct CampaignResult {
   std::int64_t trials{0};
-  std::int64_t resumed{0};      ///< of them from the journal
+  std::int64_t resumed{0};      ///< of them from the journals
   std::int64_t epochs{0};       ///< scored, of all trials
   double rms_horizontal_m{};    ///< sqrt of mean squared north + east error
   double sigma_horizontal_m{};  ///< what the filter claims: sqrt of its mean variance
@@ -53,12 +57,18 @@ struct CampaignResult {
   std::int64_t not_finite{0};   ///< the part of them that the figures above leave out
   double worst_horizontal_m{};  ///< largest error before a fix; infinite when not finite
   std::uint64_t worst_seed{};   ///< of the trial it happened in, to run again
+
+  std::vector<SeedRange> missing{};      ///< with merge_only: seeds that no journal has, ascending
+  std::int64_t repeated{0};              ///< lines of journals for trials that another line has
+  std::vector<JournalDamage> damaged{};  ///< the journals with damaged lines
 };
 
 /// The figures of all trials of the scene. Memory does not depend on their number.
-/// @param ranks  shares the trials among its processes; the result is whole at the first only
-/// @throws Error when scene or options are invalid, JournalFailure when a trial cannot be kept,
-/// RankFailure when another rank stopped.
+/// @param ranks  shares the trials among its processes. The result is whole on each, but for
+///               repeated and damaged, which the first alone knows.
+/// @throws Error when scene or options are invalid, a journal is of another scene, two journals
+/// differ in a trial; JournalFailure when a trial cannot be kept; RankFailure when another rank
+/// stopped, or has another scene.
 CampaignResult campaign(const Scene& scene, const CampaignOptions& options, const Ranks& ranks);
 
 /// The same by this process alone.

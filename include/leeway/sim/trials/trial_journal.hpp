@@ -39,10 +39,17 @@ class TrialJournal {
   int file_;
 };
 
+/// Whole lines of a journal that are no trials, whatever has hit them.
+struct JournalDamage {
+  std::filesystem::path path{};
+  std::int64_t lines{0};
+  std::int64_t first_line{0};  ///< the number of the first of them, from 1
+};
+
 /// Reader of a journal: calls f with every undamaged trial, in the order of the file.
 /// @throws Error as the constructor above, or when the file cannot be read.
-void read_journal(const std::filesystem::path& path, std::uint64_t fingerprint,
-                  const std::function<void(const TrialScore&)>& f);
+JournalDamage read_journal(const std::filesystem::path& path, std::uint64_t fingerprint,
+                           const std::function<void(const TrialScore&)>& f);
 
 /// The journal of a rank: the path itself for a process alone, path.rankN under MPI.
 std::filesystem::path journal_of_rank(const std::filesystem::path& path, int rank, int ranks);

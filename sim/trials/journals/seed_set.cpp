@@ -1,4 +1,4 @@
-#include "sim/trials/seed_set.hpp"
+#include "sim/trials/journals/seed_set.hpp"
 
 #include <algorithm>
 #include <iterator>

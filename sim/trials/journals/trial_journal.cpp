@@ -7,88 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 
-#include "sim/trials/fingerprint.hpp"
+#include "sim/trials/journals/journal_line.hpp"
 
 namespace leeway::sim {
 namespace {
 
 constexpr std::string_view kTitle = "leeway campaign journal, scene ";
-
-template <class T>
-void put(std::string& line, T value) {
-  std::array<char, 32> text;
-  std::to_chars_result end{};
-  if constexpr (std::is_floating_point_v<T>) {
-    end = std::to_chars(text.begin(), text.end(), value, std::chars_format::hex);
-  } else {
-    end = std::to_chars(text.begin(), text.end(), value);
-  }
-  line.append(text.begin(), end.ptr);
-  line += ' ';
-}
-
-/// Takes the next number and the space behind it off the line.
-template <class T>
-bool take(std::string_view& line, T& value) {
-  std::from_chars_result end{};
-  if constexpr (std::is_floating_point_v<T>) {
-    end = std::from_chars(line.begin(), line.end(), value, std::chars_format::hex);
-  } else {
-    end = std::from_chars(line.begin(), line.end(), value);
-  }
-  if (end.ec != std::errc{} || end.ptr == line.end() || *end.ptr != ' ') return false;
-  line.remove_prefix(static_cast<std::size_t>(end.ptr - line.begin()) + 1);
-  return true;
-}
-
-/// The one list of what a line holds, for both directions.
-template <class Score, class F>
-void for_each_field(Score& score, F&& f) {
-  f(score.seed);
-  f(score.epochs);
-  for (Eigen::Index i = 0; i < 3; ++i) f(score.error_sq_n_m2[i]);
-  for (Eigen::Index i = 0; i < 3; ++i) f(score.variance_n_m2[i]);
-  f(score.nees);
-  f(score.nis);
-  f(score.nis_dof);
-  f(score.beyond_r95);
-  f(score.largest_horizontal_m);
-  f(score.fused);
-  f(score.gated);
-}
-
-std::string line_of(const TrialScore& score) {
-  std::string line;
-  for_each_field(score, [&line](const auto& value) { put(line, value); });
-  put(line, score.diverged ? 1 : 0);
-  put(line, score.finite ? 1 : 0);
-  put(line, hash_of(line));
-  line.back() = '\n';
-  return line;
-}
-
-/// @param line  with a space in place of its newline
-bool parse(std::string_view line, TrialScore& score) {
-  const std::string_view whole = line;
-  bool good = true;
-  for_each_field(score, [&](auto& value) { good = good && take(line, value); });
-  int diverged = 0;
-  int finite = 0;
-  good = good && take(line, diverged) && take(line, finite);
-  score.diverged = diverged != 0;
-  score.finite = finite != 0;
-  const std::size_t checked = whole.size() - line.size();
-  std::uint64_t checksum = 0;
-  good = good && take(line, checksum) && line.empty();
-  return good && checksum == hash_of(whole.substr(0, checked));
-}
 
 std::string header_of(std::uint64_t fingerprint) {
   std::array<char, 17> hex{};
@@ -106,7 +36,7 @@ bool check_header(const std::filesystem::path& path, std::string_view start,
   }
   throw Error(path.string() +
               ": is the journal of another scene, scoring window or version of the program; give "
-              "another file, or remove this one to start anew");
+              "the options it was made with, leave it out, or remove it to start anew");
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
@@ -166,21 +96,32 @@ TrialJournal::TrialJournal(const std::filesystem::path& path, std::uint64_t fing
 
 TrialJournal::~TrialJournal() { close(file_); }
 
-void TrialJournal::append(const TrialScore& score) { write_all(path_, file_, line_of(score)); }
+void TrialJournal::append(const TrialScore& score) {
+  write_all(path_, file_, line_of(score) + "\n");
+}
 
-void read_journal(const std::filesystem::path& path, std::uint64_t fingerprint,
-                  const std::function<void(const TrialScore&)>& f) {
+JournalDamage read_journal(const std::filesystem::path& path, std::uint64_t fingerprint,
+                           const std::function<void(const TrialScore&)>& f) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(path.string() + ": cannot be read");
   const std::string header = header_of(fingerprint);
   std::string start(header.size(), '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));
-  if (!check_header(path, start, header)) return;
+  JournalDamage damage{path, 0, 0};
+  if (!check_header(path, start, header)) return damage;
+  std::int64_t number = 1;
   for (std::string line; std::getline(file, line) && !file.eof();) {
+    ++number;
+    if (line + '\n' == header) continue;  // of journals that were put behind each other
     TrialScore score;
-    if (parse(line + ' ', score)) f(score);
+    if (parse_line(line, score)) {
+      f(score);
+    } else if (damage.lines++ == 0) {
+      damage.first_line = number;
+    }
   }
+  return damage;
 }
 
 std::filesystem::path journal_of_rank(const std::filesystem::path& path, int rank, int ranks) {

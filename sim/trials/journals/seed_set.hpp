@@ -6,13 +6,9 @@
 #include <map>
 #include <vector>
 
-namespace leeway::sim {
+#include "leeway/sim/trials/seed_range.hpp"
 
-/// The seeds first .. first + count - 1.
-struct SeedRange {
-  std::uint64_t first{};
-  std::uint64_t count{};
-};
+namespace leeway::sim {
 
 /// A set of seeds as ranges that do not touch.
 class SeedSet {
