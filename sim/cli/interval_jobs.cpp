@@ -127,25 +127,27 @@ bool has_interval(const SolvedLimit& answer) { return !std::isnan(answer.interva
 
 /// Trials of one answer. What goes wrong there is said beside the answer, which stands.
 template <class F>
-void try_trials(const sim::Scene& scene, const sim::ErrorTrack& track, SolvedLimit& answer,
-                F&& trials) {
+void try_trials(const sim::Scene& scene, const sim::ErrorTrack& track, const sim::Ranks& ranks,
+                SolvedLimit& answer, F&& trials) {
   Progress bar(fmt::format("check {} at {:.1f} s", scene.imu_name, answer.interval.interval_s));
   try {
-    answer.confirmation = trials(scene, track, answer.interval, std::ref(bar));
+    answer.confirmation = trials(scene, track, answer.interval, ranks, std::ref(bar));
+  } catch (const sim::RankFailure&) {
+    throw;
   } catch (const Error& error) {
     answer.failure = error.what();
   }
 }
 
 /// The answers that --confirm asks for.
-void confirm(SolvedImu& imu, const IntervalChoice& choice) {
+void confirm(SolvedImu& imu, const IntervalChoice& choice, const sim::Ranks& ranks) {
   sim::Scene scene = imu.scene;
   scene.trials = choice.confirm_trials;
   const sim::ErrorTrack track = sim::error_track(scene);
   const std::vector<double>& asked_m = choice.confirm_limits_m;
   for (SolvedLimit& answer : imu.limits) {
     const bool is_asked = asked_m.empty() || std::ranges::count(asked_m, answer.interval.limit_m);
-    if (has_interval(answer) && is_asked) try_trials(scene, track, answer, sim::confirm);
+    if (has_interval(answer) && is_asked) try_trials(scene, track, ranks, answer, sim::confirm);
   }
 }
 
@@ -181,12 +183,12 @@ std::vector<Cell> cells_to_check(std::vector<SolvedImu>& solved, const IntervalC
 /// What is owed, and the shortest intervals as far as spare work reaches: counted, not timed, so
 /// that the answer does not depend on the machine.
 void check(std::vector<SolvedImu>& solved, const IntervalChoice& choice,
-           const std::string& own_imu) {
+           const std::string& own_imu, const sim::Ranks& ranks) {
   double spare = kSpareIncrements;
   for (const Cell& cell : cells_to_check(solved, choice, own_imu)) {
     if (!cell.is_owed && cell.increments > spare) return;
     const sim::ErrorTrack track = sim::error_track(cell.imu->scene);
-    try_trials(cell.imu->scene, track, *cell.answer, sim::check);
+    try_trials(cell.imu->scene, track, ranks, *cell.answer, sim::check);
     if (cell.answer->confirmation) {
       spare -= cell.increments / sim::kFewestTrials *
                static_cast<double>(cell.answer->confirmation->trials_run);
@@ -196,7 +198,8 @@ void check(std::vector<SolvedImu>& solved, const IntervalChoice& choice,
 
 }  // namespace
 
-std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, Json& series) {
+std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks& ranks,
+                                  Json& series) {
   SceneChoice as_written = choice.scene;
   as_written.imus.clear();
   as_written.range.reset();
@@ -221,9 +224,9 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, Json& series) {
   if (!own.gnss.outages.empty()) return solved;
   for (SolvedImu& imu : solved) {
     if (scenes.size() == 1 || imu.scene.imu_name == own.imu_name) solve_aiding(imu);
-    if (choice.confirm_trials > 0) confirm(imu, choice);
+    if (choice.confirm_trials > 0) confirm(imu, choice, ranks);
   }
-  if (choice.confirm_trials == 0 && !choice.no_check) check(solved, choice, own.imu_name);
+  if (choice.confirm_trials == 0 && !choice.no_check) check(solved, choice, own.imu_name, ranks);
   return solved;
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "leeway/sim/tools/ranks.hpp"
 #include "sim/cli/json.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/interval_tables.hpp"
@@ -20,9 +21,11 @@ struct IntervalChoice {
 
 /// The answers of every IMU that was asked for. An answer that cannot be checked says why; the
 /// others stand.
+/// @param ranks   share the trials; every rank must call it
 /// @param series  gets tables curve/IMU (interval_s, true_m, claimed_m) of the errors that were met
 ///                on the way, and free_inertial/IMU (t_s, true_m)
 /// @throws Error when the scene is invalid, or an answer is to be confirmed that was not asked for.
-std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, Json& series);
+std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks& ranks,
+                                   Json& series);
 
 }  // namespace leeway::cli

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "leeway/model/chi_square.hpp"
 #include "leeway/model/horizontal.hpp"
-#include "leeway/sim/tools/parallel.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "sim/trials/campaign_sums.hpp"
+#include "sim/trials/shared_trials.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -26,12 +28,6 @@ bool within_band(double mean, int dof_each, std::int64_t trials) {
   return mean * count > chi_square_threshold(1.0 - 0.5 * kRareProbability, dof) &&
          mean * count < chi_square_threshold(0.5 * kRareProbability, dof);
 }
-
-/// What one trial leaves: its sums, and each error before a fix that counts, over the linear one.
-struct ScoredTrial {
-  TrialScore score{};
-  std::vector<double> over_linear{};
-};
 
 /// The linear analysis of a scene, and its error by the scene's metric before every fix.
 struct LinearRun {
@@ -52,7 +48,7 @@ LinearRun linear_run(const Scene& scene, const ErrorTrack& track) {
 }
 
 /// Of all trials but one; none is left out where `without` is none of them.
-double rms_over_linear(const std::vector<ScoredTrial>& trials, std::size_t without,
+double rms_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
                        double linear_drms_m) {
   double sum_m2 = 0.0;
   double epochs = 0.0;
@@ -64,12 +60,12 @@ double rms_over_linear(const std::vector<ScoredTrial>& trials, std::size_t witho
   return std::sqrt(sum_m2 / epochs) / linear_drms_m;
 }
 
-double quantile_over_linear(const std::vector<ScoredTrial>& trials, std::size_t without,
+double quantile_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
                             double probability) {
   std::vector<double> all;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (k == without) continue;
-    all.insert(all.end(), trials[k].over_linear.begin(), trials[k].over_linear.end());
+    all.insert(all.end(), trials[k].of_fixes.begin(), trials[k].of_fixes.end());
   }
   if (all.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto at = static_cast<std::ptrdiff_t>(probability * static_cast<double>(all.size()));
@@ -97,11 +93,11 @@ struct TrialRun {
 };
 
 /// Source of the scatter: the jackknife, Efron and Tibshirani (1993) (11.5).
-TrialRun summed(const std::vector<ScoredTrial>& trials, const CovarianceAnalysis& linear,
+TrialRun summed(const std::vector<SharedTrial>& trials, const CovarianceAnalysis& linear,
                 HorizontalMetric metric) {
   TrialRun run{.linear = linear};
   CampaignSums sums;
-  for (const ScoredTrial& trial : trials) sums.add(trial.score);
+  for (const SharedTrial& trial : trials) sums.add(trial.score);
   run.campaign = result_of(sums);
   const std::size_t n = trials.size();
   const auto ratio = [&](std::size_t without) {
@@ -119,8 +115,9 @@ TrialRun summed(const std::vector<ScoredTrial>& trials, const CovarianceAnalysis
 
 class Confirmer {
  public:
-  Confirmer(const Scene& scene, const ErrorTrack& track, std::function<void(double)> progress)
-      : scene_(scene), track_(track), progress_(std::move(progress)) {}
+  Confirmer(const Scene& scene, const ErrorTrack& track, const Ranks& ranks,
+            std::function<void(double)> progress)
+      : scene_(scene), track_(track), ranks_(ranks), progress_(std::move(progress)) {}
 
   Confirmation confirm(const Interval& answer) {
     return judged(answer, run(answer.interval_s));
@@ -159,26 +156,13 @@ class Confirmer {
     scene_.gnss.interval_s = interval_s;
     const LinearRun linear = linear_run(scene_, track_);
     const TrialPlan plan(scene_, linear.analysis.window_s);
-    std::vector<ScoredTrial> trials(static_cast<std::size_t>(scene_.trials));
-    parallel_for(
-        trials.size(), [&](std::size_t k) { trials[k] = scored(plan, linear, k); },
-        [&](std::size_t done) {
-          progress_(static_cast<double>(done) / static_cast<double>(trials.size()));
-        },
-        0);
+    const auto over_linear = [&](std::size_t k, const TrialEpoch& epoch) -> std::optional<double> {
+      if (k >= linear.errors_m.size() || !plan.fixes()[k].scored) return {};
+      return epoch.error_h_m / linear.errors_m[k];
+    };
     trials_run_ += scene_.trials;
-    return summed(trials, linear.analysis, scene_.limit.metric);
-  }
-
-  ScoredTrial scored(const TrialPlan& plan, const LinearRun& linear, std::size_t k) const {
-    ScoredTrial trial;
-    std::size_t fix = 0;
-    trial.score = run_trial(plan, scene_.first_seed + k, [&](const TrialEpoch& epoch) {
-      const std::size_t i = fix++;
-      if (i >= linear.errors_m.size() || !plan.fixes()[i].scored) return;
-      trial.over_linear.push_back(epoch.error_h_m / linear.errors_m[i]);
-    });
-    return trial;
+    return summed(shared_trials(plan, over_linear, ranks_, progress_), linear.analysis,
+                  scene_.limit.metric);
   }
 
   /// Secants in log(error) over log(interval) between an interval that keeps the limit and one that
@@ -208,6 +192,7 @@ class Confirmer {
 
   Scene scene_;
   const ErrorTrack& track_;
+  const Ranks& ranks_;
   std::function<void(double)> progress_;
   int trials_run_{0};
 };
@@ -215,13 +200,13 @@ class Confirmer {
 }  // namespace
 
 Confirmation confirm(const Scene& scene, const ErrorTrack& track, const Interval& answer,
-                     const std::function<void(double fraction)>& progress) {
-  return Confirmer(scene, track, progress).confirm(answer);
+                     const Ranks& ranks, const std::function<void(double fraction)>& progress) {
+  return Confirmer(scene, track, ranks, progress).confirm(answer);
 }
 
 Confirmation check(const Scene& scene, const ErrorTrack& track, const Interval& answer,
-                   const std::function<void(double fraction)>& progress) {
-  return Confirmer(scene, track, progress).check(answer);
+                   const Ranks& ranks, const std::function<void(double fraction)>& progress) {
+  return Confirmer(scene, track, ranks, progress).check(answer);
 }
 
 }  // namespace leeway::sim

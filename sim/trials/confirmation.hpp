@@ -49,15 +49,16 @@ struct Confirmation {
 /// The check by so many trials as the scene has, and the search for a better interval where it
 /// fails. @throws Error where the scene cannot be run at this interval.
 /// @param track     error_track() of the scene
-/// @param progress  called with the fraction done, of each campaign anew
+/// @param ranks     share the trials; each gets the answer, the same to the bit on any number
+/// @param progress  called with the fraction done, of each set of trials anew
 Confirmation confirm(const Scene& scene, const ErrorTrack& track, const Interval& answer,
-                     const std::function<void(double fraction)>& progress);
+                     const Ranks& ranks, const std::function<void(double fraction)>& progress);
 
 inline constexpr int kFewestTrials = 8;
 inline constexpr int kMostTrials = 32;
 
 /// The same by as few trials as tell, kFewestTrials to kMostTrials.
 Confirmation check(const Scene& scene, const ErrorTrack& track, const Interval& answer,
-                   const std::function<void(double fraction)>& progress);
+                   const Ranks& ranks, const std::function<void(double fraction)>& progress);
 
 }  // namespace leeway::sim

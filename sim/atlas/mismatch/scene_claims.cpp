@@ -51,6 +51,10 @@ struct Town {
 
 Town town_of(const Scene& scene) {
   Town town{.scene = thinned(scene, 1)};
+  // The linear analysis is that of fixes alone, whatever the vehicle tells.
+  town.scene.estimator = SceneEstimator::kEkf;
+  town.scene.vehicle.reset();
+  town.scene.gnss.settle_s = 0.0;
   town.scene.duration_s = kDenseS + kSparseS;
   town.way = true_drive(scene.trajectory, scene.imu_rate_hz, town.scene.duration_s);
   const ErrorTrack track = error_track(town.scene);

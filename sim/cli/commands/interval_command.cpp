@@ -5,6 +5,7 @@
 
 #include "sim/cli/command.hpp"
 #include "sim/cli/interval_jobs.hpp"
+#include "sim/cli/on_ranks.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/interval_tables.hpp"
 
@@ -16,13 +17,19 @@ struct IntervalCommand {
   Output output{};
 };
 
-int run(const IntervalCommand& command) {
+int run_on(const IntervalCommand& command, const sim::Ranks& ranks) {
   Json series = Json::object();
-  const std::vector<SolvedImu> solved = solve_imus(command.choice, series);
+  const std::vector<SolvedImu> solved = solve_imus(command.choice, ranks, series);
+  if (!ranks.is_first()) return kSuccess;
   show(
       command.output, interval_json(solved), [&] { print_interval_tables(solved); },
       [&] { return series; });
   return kSuccess;
+}
+
+/// The trials are shared by all processes that mpirun started; the linear analysis is done by each.
+int run(const IntervalCommand& command) {
+  return on_ranks([&command](const sim::Ranks& ranks) { return run_on(command, ranks); });
 }
 
 void add_options(CLI::App& app, IntervalCommand& command) {

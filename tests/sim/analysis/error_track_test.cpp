@@ -102,7 +102,8 @@ TEST_CASE("a trajectory with a period is sampled once, and wraps") {
     const ErrorVector a = carried(periodic, from_s, from_s + 12.3, x, none);
     const ErrorVector b = carried(full, from_s, from_s + 12.3, x, none);
     CAPTURE(from_s);
-    CHECK((a - b).norm() < 1e-9 * b.norm());
+    // Runs of steady legs, cut elsewhere, turn by 1e-4 rad: half of that, a tenth of the error.
+    CHECK((a - b).norm() < 1e-5 * b.norm());
   }
 }
 
