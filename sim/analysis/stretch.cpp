@@ -32,7 +32,7 @@ Stretch joined(const Stretch& earlier, const Stretch& later) {
   both.Phi = compose(later.Phi, earlier.Phi);
   both.claimed_noise = carried(earlier.claimed_noise, later.Phi) + later.claimed_noise;
   both.true_noise = carried(earlier.true_noise, later.Phi) + later.true_noise;
-  if (earlier.B.size() > 0) both.B = times(later.Phi, earlier.B) + later.B;
+  if (earlier.B.size() > 0) both.B = times(later.Phi, ParameterMatrix(earlier.B)) + later.B;
   return both;
 }
 
