@@ -120,7 +120,8 @@ class Analysis {
   }
 
   CovariancePoint point(const SceneCovariance<kParameters>& pair, double t_s, Moment moment) const {
-    return {t_s, moment, truth_at(scene_.trajectory, t_s).nav.r_e_m, pair.claimed(), pair.truth()};
+    return {t_s, moment, track_.truth(scene_.trajectory, t_s).nav.r_e_m, pair.claimed(),
+            pair.truth()};
   }
 
   /// The error at the arrival of the fix of now, before it is used.
@@ -205,7 +206,7 @@ class Analysis {
   }
 
   void update() {
-    const TruthPoint truth = truth_at(scene_.trajectory, now_s_);
+    const TruthPoint truth = track_.truth(scene_.trajectory, now_s_);
     const double since_s = now_s_ - last_fix_s_;
     const double weight = gnss_position_weight(since_s, correlation_s_);
     last_fix_s_ = now_s_;

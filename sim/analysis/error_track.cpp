@@ -60,10 +60,18 @@ class ErrorTrack::Sampler {
   void sample() {
     while (step_ < steps_) {
       const std::size_t first_piece = track_.pieces_.size();
+      const Eigen::Vector3d v_before = start_.nav.v_e_mps;
       std::size_t legs = std::min(2 * legs_, std::min(kMostLegs, steps_ - step_));
       while (legs > 1 && !add_steady(legs)) legs /= 2;
       if (legs == 1 && !add_steady(1)) add_moving();
-      track_.add_run(legs, first_piece);
+      const double run_s = static_cast<double>(legs) * track_.step_s_;
+      Run run;
+      run.first_piece = first_piece;
+      run.is_steady = track_.pieces_.size() == first_piece + 1;
+      run.gain_e_mps2 = (start_.nav.v_e_mps - v_before) / run_s;
+      run.middle = middle_;
+      run.middle_s = time_s(static_cast<double>(step_)) + 0.5 * run_s;
+      track_.add_run(legs, run);
       step_ += legs;
       legs_ = legs;
     }
@@ -79,17 +87,17 @@ class ErrorTrack::Sampler {
     const auto begin = static_cast<double>(step_);
     const auto count = static_cast<double>(legs);
     const TruthPoint end = truth_at(trajectory_, time_s(begin + count));
-    const TruthPoint middle = truth_at(trajectory_, time_s(begin + 0.5 * count));
-    if (!is_steady(start_, middle, end, time_s(count))) return false;
-    if (legs > 1 && !mean_has_come_to(middle)) return false;
+    middle_ = truth_at(trajectory_, time_s(begin + 0.5 * count));
+    if (!is_steady(start_, middle_, end, time_s(count))) return false;
+    if (legs > 1 && !mean_has_come_to(middle_)) return false;
     MeanMotion of_leg;
     for (int i = 0; i < kPiecesPerStep; ++i) {
-      let_mean_follow(middle);
+      let_mean_follow(middle_);
       of_leg.omega_ib_b_radps += mean_.omega_ib_b_radps / kPiecesPerStep;
       of_leg.acceleration_e_mps2 += mean_.acceleration_e_mps2 / kPiecesPerStep;
     }
     pieces_before_ += (legs - 1) * kPiecesPerStep;
-    add_piece(middle, of_leg);
+    add_piece(middle_, of_leg);
     start_ = end;
     return true;
   }
@@ -129,7 +137,8 @@ class ErrorTrack::Sampler {
   ErrorTrack& track_;
   const Trajectory& trajectory_;
   std::size_t steps_;
-  TruthPoint start_;  // of the step
+  TruthPoint start_;   // of the step
+  TruthPoint middle_;  // of the run
   std::size_t step_{0};
   std::size_t legs_{1};  // of the last run
   std::size_t pieces_before_{0};
@@ -150,8 +159,20 @@ ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
   Sampler(*this, trajectory, steps).sample();
 }
 
-void ErrorTrack::add_run(std::size_t legs, std::size_t first_piece) {
-  Run run{first_piece, pieces_.size() == first_piece + 1};
+TruthPoint ErrorTrack::truth(const Trajectory& trajectory, double t_s) const {
+  const double span_s = static_cast<double>(steps()) * step_s_;
+  const double local_s = t_s - std::max(std::ceil(t_s / span_s - kSlack) - 1.0, 0.0) * span_s;
+  const double step = std::max(std::floor(local_s / step_s_ + kSlack), 0.0);
+  const Run& run = runs_[run_of_[std::min(static_cast<std::size_t>(step), steps() - 1)]];
+  if (!run.is_steady) return truth_at(trajectory, t_s);
+  const double dt_s = local_s - run.middle_s;
+  TruthPoint truth = run.middle;
+  truth.nav.r_e_m += dt_s * truth.nav.v_e_mps;
+  truth.nav.v_e_mps += dt_s * run.gain_e_mps2;
+  return truth;
+}
+
+void ErrorTrack::add_run(std::size_t legs, Run run) {
   const Leg whole = part(run, 0.0, step_s_);
   run.Phi = whole.Phi;
   run.motion = whole.motion;

@@ -70,6 +70,10 @@ class ErrorTrack {
   /// Whether the dynamics are the same all the time: at rest on the Earth.
   bool is_stationary() const;
 
+  /// The truth at a time: that of the trajectory, or where it is steady what its middle tells, within
+  /// 1e-4 rad and 1 m.
+  TruthPoint truth(const Trajectory& trajectory, double t_s) const;
+
   /// The run that a leg belongs to: legs of the same run are the same.
   std::size_t run_of(std::size_t step) const { return run_of_[step]; }
 
@@ -95,14 +99,17 @@ class ErrorTrack {
 
   /// Legs in a row with the same dynamics: one leg of many pieces, or many of one.
   struct Run {
-    std::size_t first_piece;
-    bool is_steady;
+    std::size_t first_piece{};
+    bool is_steady{};
     Transition Phi{};  // of a whole leg
     MeanMotion motion{};
+    TruthPoint middle{};  // of a steady run
+    double middle_s{};
+    Eigen::Vector3d gain_e_mps2{};  // of velocity over the run
   };
 
   class Sampler;
-  void add_run(std::size_t legs, std::size_t first_piece);
+  void add_run(std::size_t legs, Run run);
   void extend(Leg& leg, const Piece& piece, double dt_s) const;
   Leg part(const Run& run, double from_s, double to_s) const;
 
