@@ -217,7 +217,7 @@ class Analysis {
     if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
   }
 
-  /// Goes from the fix of now over those that need not be followed one by one, where there are such.
+  /// Goes from the fix of now over those that need not be followed one by one, if there are any.
   void repeat() {
     const double interval_s = scene_.gnss.interval_s;
     const bool begins = now_s_ > scene_.gnss.settle_s && !has_tried_to_repeat_;

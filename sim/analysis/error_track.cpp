@@ -27,8 +27,7 @@ ParameterMatrix parameter_input(const Eigen::Matrix3d& C_eb, const Eigen::Vector
 }
 
 Eigen::Vector3d acceleration_e(const TruthPoint& truth) {
-  return truth.nav.q_eb * truth.f_ib_b_mps2 +
-         gravity_e(GravityModel::kNormal, truth.nav.r_e_m);
+  return truth.nav.q_eb * truth.f_ib_b_mps2 + gravity_e(GravityModel::kNormal, truth.nav.r_e_m);
 }
 
 /// Whether one truth may stand for a stretch of time.
@@ -120,9 +119,8 @@ class ErrorTrack::Sampler {
 
   void let_mean_follow(const TruthPoint& truth) {
     const double piece_s = track_.piece_s_;
-    const double window_s =
-        std::clamp(static_cast<double>(++pieces_before_) * piece_s, piece_s,
-                   std::max(InertialEstimate::kMeanRateS, piece_s));
+    const double window_s = std::clamp(static_cast<double>(++pieces_before_) * piece_s, piece_s,
+                                       std::max(InertialEstimate::kMeanRateS, piece_s));
     const double share = piece_s / window_s;
     mean_.omega_ib_b_radps += share * (truth.omega_ib_b_radps - mean_.omega_ib_b_radps);
     mean_.acceleration_e_mps2 += share * (acceleration_e(truth) - mean_.acceleration_e_mps2);

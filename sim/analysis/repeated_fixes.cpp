@@ -73,9 +73,9 @@ class PatternMap {
     });
     if (states_.parameters == 0) return;
     const MatrixXd way = all.closed_loop(start.claimed).topRows<kErrorStates>();
-    truth.parameters()->set_sensitivity(
-        way.leftCols<kErrorStates>() * truth.parameters()->sensitivity() +
-        way.rightCols<kSensorParameters>());
+    truth.parameters()->set_sensitivity(way.leftCols<kErrorStates>() *
+                                            truth.parameters()->sensitivity() +
+                                        way.rightCols<kSensorParameters>());
   }
 
  private:

@@ -1,6 +1,6 @@
 /// @file
-/// The covariances of a scene over many fixes at once where its motion repeats: by doubling. Part of
-/// covariance_analysis.
+/// The covariances of a scene over many fixes at once where its motion repeats: by doubling. Part
+/// of covariance_analysis.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ struct FixSpan {
 /// Fixes after which motion and fixes begin anew.
 struct FixPattern {
   int fixes{};
-  double interval_s{};     ///< that of the span, or one near it
+  double interval_s{};  ///< that of the span, or one near it
   double length_s{};
   double row_weight{1.0};  ///< with which fixes at another interval tell as much in the same time
 };

@@ -74,11 +74,11 @@ RiccatiMap::Triple RiccatiMap::joint_tangent(const RiccatiMap& later, const Matr
   Triple joint;
   joint.A = d_two.A * V * one.A + two.A * dV * one.A + AV * d_one.A;
   const MatrixXd dGV = d_two.G * V + two.G * dV;
-  joint.G = d_one.G + one.A.transpose() * dGV * one.A +
-            twice_symmetric(d_one.A.transpose() * GV * one.A);
+  joint.G =
+      d_one.G + one.A.transpose() * dGV * one.A + twice_symmetric(d_one.A.transpose() * GV * one.A);
   const MatrixXd dVH = dV * one.H + V * d_one.H;
-  joint.H = d_two.H + two.A * dVH * two.A.transpose() +
-            twice_symmetric(d_two.A * VH * two.A.transpose());
+  joint.H =
+      d_two.H + two.A * dVH * two.A.transpose() + twice_symmetric(d_two.A * VH * two.A.transpose());
   make_symmetric(joint.G);
   make_symmetric(joint.H);
   return joint;

@@ -68,7 +68,9 @@ class Claim {
     P_ += stretch.claimed_noise;
   }
 
-  void set_errors(const ErrorMatrix& P) { P_.template topLeftCorner<kErrorStates, kErrorStates>() = P; }
+  void set_errors(const ErrorMatrix& P) {
+    P_.template topLeftCorner<kErrorStates, kErrorStates>() = P;
+  }
 
   /// @returns the gain
   Vector take(const Vector& h) {

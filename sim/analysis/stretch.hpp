@@ -1,6 +1,6 @@
 /// @file
-/// The dynamics and the noise of a scene over stretches of time that are longer than the legs of its
-/// track: what lies between two fixes in a few products. Part of covariance_analysis.
+/// The dynamics and the noise of a scene over stretches of time that are longer than the legs of
+/// its track: what lies between two fixes in a few products. Part of covariance_analysis.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,8 @@ struct Stretch {
 };
 
 /// The stretches of a scene's track: pairs of legs, pairs of pairs and so on, each made when it is
-/// first asked for and then kept. Legs of the same run share theirs. Not for use by several threads.
+/// first asked for and then kept. Legs of the same run share theirs. Not for use by several
+/// threads.
 class Stretches {
  public:
   /// @param track  error_track() of the scene; both must live as long as this
@@ -78,7 +79,7 @@ class Stretches {
   const ErrorTrack& track_;
   ProcessNoise claimed_;
   ProcessNoise true_;
-  std::size_t lowest_level_{0};  // below it only steady stretches are kept
+  std::size_t lowest_level_{0};                     // below it only steady stretches are kept
   std::vector<std::vector<std::uint32_t>> kept_{};  // by level and index: place and 1, or 0
   std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> steady_{};  // by run and level
   std::deque<Stretch> nodes_{};

@@ -66,9 +66,9 @@ class TruthModel {
   /// Whether stretches of many legs may be taken: no error has a memory of its own between fixes.
   bool takes_stretches() const {
     using Source = MarkovSource<kFilters, kParameters>;
-    return !by_source_ && std::ranges::all_of(sources_.front().second.processes(), [](const auto& p) {
-      return p.enters_at == Source::kFixes;
-    });
+    const auto enters_by_fixes = [](const Source& p) { return p.enters_at == Source::kFixes; };
+    return !by_source_ &&
+           std::ranges::all_of(sources_.front().second.processes(), enters_by_fixes);
   }
 
   /// What RiccatiMap carries, all sources in one. @pre takes_stretches()

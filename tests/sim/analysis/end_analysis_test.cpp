@@ -23,8 +23,8 @@ Scene scene_on(const Trajectory& trajectory, double interval_s, double duration_
   return scene;
 }
 
-/// With all that can be doubled: the filter knows neither how wrong its sensors are nor how long the
-/// errors of fixes last.
+/// With all that can be doubled: the filter knows neither how wrong its sensors are nor how long
+/// the errors of fixes last.
 Scene wronged(Scene scene) {
   scene.imu.accelerometer.scale_sigma = 1e-3;
   scene.imu.gyro.misalignment_sigma_rad = 1e-3;
@@ -67,7 +67,8 @@ TEST_CASE("a stretch does what its legs do one by one") {
   const ErrorTrack track = error_track(scene);
   Stretches stretches(scene, track);
   const ProcessNoise claimed = process_noise(scene.filter.imu);
-  for (const auto& [from_s, to_s] : {std::pair{0.0, 240.0}, {3.3, 3.4}, {3.3, 61.7}, {200.5, 555.0}}) {
+  for (const auto& [from_s, to_s] :
+       {std::pair{0.0, 240.0}, {3.3, 3.4}, {3.3, 61.7}, {200.5, 555.0}}) {
     ErrorMatrix P = ErrorMatrix::Identity();
     ErrorMatrix all = ErrorMatrix::Identity();
     ParameterMatrix S = ParameterMatrix::Zero();
@@ -119,7 +120,8 @@ TEST_CASE("a pattern of fixes: one at rest, those of some periods on a loop") {
   CHECK(at_fixes(scene_on(square_loop(), 60.0)) == 4);
   CHECK(at_fixes(scene_on(square_loop(), 100.0)) == 12);  // in five loops
   CHECK(at_fixes(scene_on(square_loop(), 3.7)) == 65);    // moved to 240 / 65 s
-  CHECK(std::abs(pattern_of(scene_on(square_loop(), 3.7))->row_weight - std::sqrt(240.0 / 65.0 / 3.7)) < 1e-12);
+  CHECK(std::abs(pattern_of(scene_on(square_loop(), 3.7))->row_weight -
+                 std::sqrt(240.0 / 65.0 / 3.7)) < 1e-12);
 }
 
 TEST_CASE("no pattern where the motion does not repeat, or not often enough") {

@@ -25,8 +25,7 @@ struct Step {
     const VectorXd K = m.claimed * h / (h.dot(m.claimed * h) + 1.0);
     const MatrixXd left = MatrixXd::Identity(h.size(), h.size()) - K * h.transpose();
     m.claimed = (left * m.claimed * left.transpose() + K * K.transpose()).eval();
-    m.truth =
-        (left * m.truth * left.transpose() + true_variance * K * K.transpose()).eval();
+    m.truth = (left * m.truth * left.transpose() + true_variance * K * K.transpose()).eval();
     return m;
   }
 
@@ -127,7 +126,8 @@ TEST_CASE("position and velocity that are measured together tend to sqrt(sigma_p
     const double after = std::sqrt(repeated(map, 1 << 20).of(start).claimed(0, 0));
     // Each gap then adds (sigma_v T)^2: to first order in T, as docs/theory/analysis/interval.md.
     CAPTURE(T);
-    CHECK(std::abs(after / std::sqrt(kSigmaP * kSigmaV * T) - 1.0) < 0.5 * kSigmaV * T / kSigmaP + 1e-3);
+    CHECK(std::abs(after / std::sqrt(kSigmaP * kSigmaV * T) - 1.0) <
+          0.5 * kSigmaV * T / kSigmaP + 1e-3);
   }
 }
 

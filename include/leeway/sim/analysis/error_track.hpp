@@ -70,8 +70,8 @@ class ErrorTrack {
   /// Whether the dynamics are the same all the time: at rest on the Earth.
   bool is_stationary() const;
 
-  /// The truth at a time: that of the trajectory, or where it is steady what its middle tells, within
-  /// 1e-4 rad and 1 m.
+  /// The truth at a time: that of the trajectory, or where it is steady what its middle tells,
+  /// within 1e-4 rad and 1 m.
   TruthPoint truth(const Trajectory& trajectory, double t_s) const;
 
   /// The run that a leg belongs to: legs of the same run are the same.
