@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/sim/cli/mpi.hpp"
 #include "tests/sim/cli/program.hpp"
 
 namespace leeway::test {
@@ -19,18 +20,6 @@ std::string campaign(int trials, int duration_s = 240) {
   return "campaign --scene " +
          quoted(std::filesystem::path(LEEWAY_SCENES_DIR) / "square-loop.toml") + " --at " +
          std::to_string(duration_s) + " --interval-s 10 --trials " + std::to_string(trials) + " ";
-}
-
-bool has_mpi() {
-#ifdef LEEWAY_HAS_MPI
-  return std::system("mpirun --version >/dev/null 2>&1") == 0;
-#else
-  return false;
-#endif
-}
-
-std::string mpirun(int ranks) {
-  return "mpirun --allow-run-as-root --oversubscribe -n " + std::to_string(ranks) + " ";
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
