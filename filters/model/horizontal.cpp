@@ -56,18 +56,6 @@ Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
   return C_e_ne.transpose() * P_rr_e_m2 * C_e_ne;
 }
 
-double horizontal_error_m(HorizontalMetric metric, const Eigen::Matrix2d& P_ne_m2) {
-  switch (metric) {
-    case HorizontalMetric::kR95:
-      return horizontal_radius_m(P_ne_m2, 0.95);
-    case HorizontalMetric::kAxis:
-      return std::sqrt(P_ne_m2.diagonal().maxCoeff());
-    case HorizontalMetric::kDrms:
-      break;
-  }
-  return std::sqrt(P_ne_m2.trace());
-}
-
 double horizontal_radius_m(const Eigen::Matrix2d& P_ne_m2, double probability) {
   const Eigen::Vector2d variances = principal_variances(P_ne_m2);
   if (!(variances(0) > 0.0)) return 0.0;

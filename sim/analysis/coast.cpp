@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/model/horizontal.hpp"
+#include "leeway/model/error_metric.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -28,23 +28,40 @@ double end_of(const Scene& scene, const Outage& outage) {
   return scene.duration_s;
 }
 
-Coast coast_of(const Scene& scene, const ErrorTrack& track, const Outage& outage, double limit_m) {
+/// When the last fix before an outage is valid; the scene's start without one.
+double last_fix_before(const Scene& scene, const Outage& outage) {
+  double last_s = 0.0;
+  for (const double t_s : fix_times_s(scene.gnss, scene.duration_s)) {
+    if (t_s <= outage.start_s) last_s = t_s;
+  }
+  return last_s;
+}
+
+Coast coast_of(const Scene& scene, const ErrorTrack& track, const Outage& outage) {
+  const AllowedError allowed = scene.limit.allowed();
   Coast coast{outage, end_of(scene, outage)};
-  coast.limit_m = limit_m;
+  coast.limit_m = allowed.limit_m;
+  coast.share = allowed.share;
+  const double fix_s = last_fix_before(scene, outage);
+  const auto allowed_at_m = [&](double t_s) {
+    return allowed.after_m(distance_gone_m(scene, track, fix_s, t_s));
+  };
+  coast.end_allowed_m = allowed_at_m(coast.end_s);
   double before_s = outage.start_s;
   double before_m = 0.0;
   follow(with_endless(scene, outage), track, [&](const CovariancePoint& point) {
-    const double error_m =
-        horizontal_error_m(scene.limit.metric,
-                           horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr)));
+    const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
+    const double error_m = error_by_metric_m(scene, track, point.t_s, P_n_m2);
     if (point.t_s > outage.start_s) {
-      const auto share_of = [&](double t_s) { return (t_s - before_s) / (point.t_s - before_s); };
+      const auto part_of = [&](double t_s) { return (t_s - before_s) / (point.t_s - before_s); };
       if (before_s < coast.end_s && point.t_s >= coast.end_s) {
-        coast.end_error_m = std::lerp(before_m, error_m, share_of(coast.end_s));
+        coast.end_error_m = std::lerp(before_m, error_m, part_of(coast.end_s));
       }
-      if (std::isnan(coast.coast_s) && error_m > limit_m) {
-        const double share = before_m > limit_m ? 0.0 : (limit_m - before_m) / (error_m - before_m);
-        coast.coast_s = std::lerp(before_s, point.t_s, share) - outage.start_s;
+      const double beyond_m = error_m - allowed_at_m(point.t_s);
+      if (std::isnan(coast.coast_s) && beyond_m > 0.0) {
+        const double left_m = std::max(allowed_at_m(before_s) - before_m, 0.0);
+        const double part = left_m / (left_m + beyond_m);
+        coast.coast_s = std::lerp(before_s, point.t_s, part) - outage.start_s;
       }
     }
     before_s = point.t_s;
@@ -56,10 +73,13 @@ Coast coast_of(const Scene& scene, const ErrorTrack& track, const Outage& outage
 
 }  // namespace
 
-std::vector<Coast> coasts(const Scene& scene, const ErrorTrack& track, double limit_m) {
+std::vector<Coast> coasts(const Scene& of_scene, const ErrorTrack& track,
+                          const AllowedError& allowed) {
+  Scene scene = of_scene;
+  scene.limit.allow(allowed);
   std::vector<Coast> answers;
   for (const Outage& outage : scene.gnss.outages) {
-    answers.push_back(coast_of(scene, track, outage, limit_m));
+    answers.push_back(coast_of(scene, track, outage));
   }
   return answers;
 }

@@ -10,10 +10,10 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/ekf/held_update.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
-#include "leeway/model/process_noise.hpp"
 #include "sim/analysis/end_analysis.hpp"
 #include "sim/analysis/repeated_fixes.hpp"
 #include "sim/analysis/scene_covariance.hpp"
@@ -30,15 +30,6 @@ constexpr double kSamePhase = 1e-6;
 // As the navigator's motion_hides_heading().
 constexpr double kEvenS = 10.0;
 constexpr double kEvenFixes = 3.0;
-
-/// A step must resolve the sensors' in-run drift.
-double step_limit_s(const ImuErrorModel& imu) {
-  double shortest_s = std::numeric_limits<double>::infinity();
-  for (const TriadErrorModel* triad : {&imu.accelerometer, &imu.gyro}) {
-    if (triad->in_run.sigma > 0.0) shortest_s = std::min(shortest_s, triad->in_run.tau_s);
-  }
-  return std::max(0.1 * shortest_s, 0.01);
-}
 
 /// A navigator takes positions as good as carrier phase gives them for white.
 double believed_correlation_s(const Scene& scene) {
@@ -58,8 +49,9 @@ struct Window {
 /// What the fixes that count add up to.
 struct Score {
   int fixes{0};
-  double claimed_sum_m2{0.0};
-  double true_sum_m2{0.0};
+  Eigen::Vector3d claimed_sum_n_m2{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d true_sum_n_m2{Eigen::Vector3d::Zero()};
+  double worst{0.0};  // over what is allowed
   CovarianceAnalysis result{};
 };
 
@@ -142,22 +134,29 @@ class Analysis {
     const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
     if (config_.observer) config_.observer(before);
     if (!counts(t_s)) return;
-    const Eigen::Matrix2d claimed =
-        horizontal_covariance(before.r_e_m, before.claimed.block<3, 3>(kDr, kDr));
-    const Eigen::Matrix2d truth =
-        horizontal_covariance(before.r_e_m, before.truth.block<3, 3>(kDr, kDr));
+    const ErrorBeforeFix claimed = size_of(before, before.claimed, score_.claimed_sum_n_m2);
+    const ErrorBeforeFix truth = size_of(before, before.truth, score_.true_sum_n_m2);
     ++score_.fixes;
-    score_.claimed_sum_m2 += claimed.trace();
-    score_.true_sum_m2 += truth.trace();
     CovarianceAnalysis& r = score_.result;
-    r.claimed_m = std::max(r.claimed_m, horizontal_error_m(scene_.limit.metric, claimed));
-    const double true_m = horizontal_error_m(scene_.limit.metric, truth);
-    if (true_m <= r.true_m) return;
-    r.true_m = true_m;
+    r.claimed_errors.add(claimed);
+    r.true_errors.add(truth);
+    const AllowedError allowed = scene_.limit.allowed();
+    if (truth.over(allowed) <= score_.worst) return;
+    score_.worst = truth.over(allowed);
+    r.true_m = truth.error_m;
+    r.allowed_m = allowed.after_m(truth.distance_m);
     r.worst_s = t_s;
     r.worst = before;
     if (!config_.by_source) return;
     r.error_budget = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
+  }
+
+  /// @param sum_n_m2  gets the variances along north, east, down
+  ErrorBeforeFix size_of(const CovariancePoint& point, const ErrorMatrix& P,
+                         Eigen::Vector3d& sum_n_m2) const {
+    const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, P.block<3, 3>(kDr, kDr));
+    sum_n_m2 += P_n_m2.diagonal();
+    return error_before_fix(scene_, track_, std::max(last_fix_s_, 0.0), point.t_s, P_n_m2);
   }
 
   /// Which stretch of the scene a fix belongs to, counted back from the end. One on the border of
@@ -196,8 +195,10 @@ class Analysis {
     }
     compare_with_previous();
     CovarianceAnalysis r = score_.result;
-    r.claimed_drms_m = std::sqrt(score_.claimed_sum_m2 / score_.fixes);
-    r.true_drms_m = std::sqrt(score_.true_sum_m2 / score_.fixes);
+    r.claimed_m = r.claimed_errors.worst(scene_.limit.allowed()).error_m;
+    r.claimed_drms_m = std::sqrt(score_.claimed_sum_n_m2.head<2>().sum() / score_.fixes);
+    r.true_rms_n_m = (score_.true_sum_n_m2 / score_.fixes).cwiseSqrt();
+    r.true_drms_m = r.true_rms_n_m.head<2>().norm();
     r.window_s = scored_s_;
     r.fixes = fixes_;
     r.settled = settled_s_.has_value();
@@ -269,17 +270,6 @@ class Analysis {
 };
 
 }  // namespace
-
-ErrorTrack error_track(const Scene& scene, double step_s) {
-  const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
-  ErrorTrack track(scene.trajectory, scene.duration_s,
-                   {std::min(step_s, step_limit_s(scene.imu)),
-                    !parameter_moments(scene.imu).empty(), noise.tau_a_s, noise.tau_g_s});
-  if (scene.vehicle || scene.estimator == SceneEstimator::kNavigator) {
-    track.set_aiding(std::make_shared<SceneAiding>(scene, track.step_s()));
-  }
-  return track;
-}
 
 void free_inertial(const Scene& scene, const ErrorTrack& track,
                    const std::function<bool(const CovariancePoint&)>& observer) {

@@ -145,7 +145,7 @@ class ErrorTrack::Sampler {
 
 ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
                        const ErrorTrackConfig& config)
-    : config_(config) {
+    : config_(config), path_(trajectory, duration_s) {
   require("error track", "step_s", config.step_s, between(0.01, 100.0));
   require("error track", "duration_s", duration_s, kPositive);
   const double period_s = trajectory.period_s.value_or(duration_s);

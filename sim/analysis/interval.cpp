@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "leeway/model/error_metric.hpp"
 #include "lib/earth/field_walk.hpp"
 #include "sim/analysis/end_analysis.hpp"
 
@@ -16,67 +17,84 @@ constexpr double kShorterBy = 10.0;  // below the first guess the error falls ev
 constexpr double kLongerBy = 1.41;   // above it fixes come in step with the motion and out of it
 constexpr int kMostSecants = 60;
 
-void validate(const Scene& scene, const std::vector<double>& limits_m,
+void validate(const Scene& scene, const std::vector<AllowedError>& limits,
               const IntervalConfig& config) {
-  for (const double limit_m : limits_m) require("interval", "limit_m", limit_m, positive_to(1e6));
+  for (const AllowedError& allowed : limits) {
+    require("interval", "limit_m", allowed.limit_m, positive_to(1e6));
+    require("interval", "share", allowed.share, between(0.0, 1.0));
+  }
   const double half_s = std::nextafter(0.5 * scene.duration_s, 0.0);
   require("interval", "shortest_s, below half the scene's duration,", config.shortest_s,
           between(0.01, half_s));
   require("interval", "tolerance", config.tolerance, between(1e-6, 0.1));
 }
 
-/// A point of the curve error over interval, in logarithms: nearly a straight line.
+/// A point of the curve of the error over what is allowed against the interval, in logarithms:
+/// nearly a straight line, and above 0 beyond the limit.
 struct Sample {
   double log_interval;
-  double log_error;
+  double log_excess;
+
+  bool is_beyond() const { return log_excess > 0.0; }
 };
+
+/// The scene, told to measure the way where one of the limits grows with it.
+Scene with_way(Scene scene, const std::vector<AllowedError>& limits) {
+  for (const AllowedError& allowed : limits) {
+    scene.limit.share = std::max(scene.limit.share, allowed.share);
+  }
+  return scene;
+}
 
 class Solver {
  public:
-  Solver(const Scene& scene, const IntervalConfig& config)
-      : scene_(scene),
+  Solver(const Scene& scene, const std::vector<AllowedError>& limits, const IntervalConfig& config)
+      : scene_(with_way(scene, limits)),
         config_(config),
         track_(error_track(scene, config.covariance_step_s)),
-        stretches_(scene, track_),
+        stretches_(scene_, track_),
         log_longest_(std::log(0.5 * scene.duration_s)) {}
 
-  Interval solve(double limit_m) {
+  Interval solve(const AllowedError& allowed) {
     Interval answer;
-    answer.limit_m = limit_m;
-    const double log_limit = std::log(limit_m);
-    const auto [below, above] = bracket(log_limit);
-    if (below.log_error > log_limit) {
+    answer.limit_m = allowed.limit_m;
+    answer.share = allowed.share;
+    const auto [below, above] = bracket(allowed);
+    if (below.is_beyond()) {
       answer.outcome = Interval::Outcome::kNever;
       report(answer, below.log_interval);
       return answer;
     }
-    if (above.log_error <= log_limit) answer.outcome = Interval::Outcome::kAlways;
+    if (!above.is_beyond()) answer.outcome = Interval::Outcome::kAlways;
     const double log_interval = answer.outcome == Interval::Outcome::kAlways
                                     ? log_longest_
-                                    : narrow(below, above, log_limit).log_interval;
+                                    : narrow(below, above, allowed).log_interval;
     answer.interval_s = std::exp(log_interval);
     report(answer, log_interval);
     return answer;
   }
 
   void add_free_inertial(std::vector<Interval>& answers) const {
+    ErrorBeforeFix before;
     double before_s = 0.0;
-    double before_m = 0.0;
     free_inertial(scene_, track_, [&](const CovariancePoint& point) {
-      const double error_m =
-          horizontal_error_m(scene_.limit.metric,
-                             horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr)));
-      if (config_.free_inertial_observer) config_.free_inertial_observer(point.t_s, error_m);
+      const Eigen::Matrix3d P_n_m2 =
+          ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
+      const ErrorBeforeFix now = error_before_fix(scene_, track_, 0.0, point.t_s, P_n_m2);
+      if (config_.free_inertial_observer) config_.free_inertial_observer(point.t_s, now.error_m);
       bool wanted = false;
       for (Interval& answer : answers) {
         if (!std::isnan(answer.free_inertial_s)) continue;
         wanted = true;
-        if (error_m < answer.limit_m) continue;
-        const double share = (answer.limit_m - before_m) / (error_m - before_m);
-        answer.free_inertial_s = before_s + share * (point.t_s - before_s);
+        const AllowedError allowed = answer.allowed();
+        const double beyond_m = now.error_m - allowed.after_m(now.distance_m);
+        if (beyond_m < 0.0) continue;
+        const double left_m = allowed.after_m(before.distance_m) - before.error_m;
+        const double part = left_m / (left_m + beyond_m);
+        answer.free_inertial_s = before_s + part * (point.t_s - before_s);
       }
       before_s = point.t_s;
-      before_m = error_m;
+      before = now;
       return wanted;
     });
   }
@@ -98,43 +116,55 @@ class Solver {
     return found->second;
   }
 
-  Sample sample(double log_interval) {
-    return {log_interval, std::log(known(log_interval).true_m)};
+  Sample sample(double log_interval, const AllowedError& allowed) {
+    return {log_interval, std::log(known(log_interval).true_errors.worst(allowed).over(allowed))};
   }
 
   /// Two neighbours with the limit between them, or both the same at an end of what is tried. The
   /// error may fall again where fixes come in step with the motion: every interval on the way to
   /// the lower one keeps the limit, as far as the steps see it. They are the same for all limits.
-  std::pair<Sample, Sample> bracket(double log_limit) {
+  std::pair<Sample, Sample> bracket(const AllowedError& allowed) {
     const double log_shortest = std::log(config_.shortest_s);
-    Sample below = sample(std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_));
+    const auto longer = [&](const Sample& s) {
+      return sample(std::min(s.log_interval + std::log(kLongerBy), log_longest_), allowed);
+    };
+    const double log_first = std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_);
+    Sample below = sample(log_first, allowed);
     Sample above = below;
-    while (below.log_error > log_limit && below.log_interval > log_shortest) {
+    while (below.is_beyond() && below.log_interval > log_shortest) {
       above = below;
-      below = sample(std::max(below.log_interval - std::log(kShorterBy), log_shortest));
+      below = sample(std::max(below.log_interval - std::log(kShorterBy), log_shortest), allowed);
     }
-    if (below.log_error > log_limit) return {below, below};
-    while (above.log_error <= log_limit && above.log_interval < log_longest_) {
+    if (below.is_beyond()) {
+      // What grows with the way may yet overtake the error.
+      above = sample(log_first, allowed);
+      while (allowed.share > 0.0 && above.is_beyond() && above.log_interval < log_longest_) {
+        above = longer(above);
+      }
+      if (above.is_beyond()) return {below, below};
       below = above;
-      above = sample(std::min(above.log_interval + std::log(kLongerBy), log_longest_));
+    }
+    while (!above.is_beyond() && above.log_interval < log_longest_) {
+      below = above;
+      above = longer(above);
     }
     return {below, above};
   }
 
   /// Regula falsi with Illinois weights. @returns the last sample below the limit.
-  Sample narrow(Sample below, Sample above, double log_limit) {
+  Sample narrow(Sample below, Sample above, const AllowedError& allowed) {
     double below_weight = 1.0;
     double above_weight = 1.0;
     for (int i = 0; i < kMostSecants; ++i) {
-      const double low = below_weight * (below.log_error - log_limit);
-      const double high = above_weight * (above.log_error - log_limit);
+      const double low = below_weight * below.log_excess;
+      const double high = above_weight * above.log_excess;
       const double width = above.log_interval - below.log_interval;
       if (width < config_.tolerance || -low < config_.tolerance * below_weight) break;
       // Halves where the two errors tell no slope.
-      const double share = std::clamp(-low / (high - low), 0.0, 1.0);
+      const double part = std::clamp(-low / (high - low), 0.0, 1.0);
       const Sample next =
-          sample(below.log_interval + width * (std::isfinite(share) ? share : 0.5));
-      if (next.log_error <= log_limit) {
+          sample(below.log_interval + width * (std::isfinite(part) ? part : 0.5), allowed);
+      if (!next.is_beyond()) {
         below = next;
         below_weight = 1.0;
         above_weight *= 0.5;
@@ -148,9 +178,12 @@ class Solver {
   }
 
   void report(Interval& answer, double log_interval) {
+    const AllowedError allowed = answer.allowed();
     const CovarianceAnalysis& analysis = known(log_interval);
-    answer.true_m = analysis.true_m;
-    answer.claimed_m = analysis.claimed_m;
+    const ErrorBeforeFix worst = analysis.true_errors.worst(allowed);
+    answer.true_m = worst.error_m;
+    answer.allowed_m = allowed.after_m(worst.distance_m);
+    answer.claimed_m = analysis.claimed_errors.worst(allowed).error_m;
     answer.settled = analysis.settled;
     if (!config_.with_step_effect) return;
     // Fixes closer than half a step are the steps.
@@ -159,11 +192,12 @@ class Solver {
       fine_track_ = error_track(scene_, 0.5 * config_.covariance_step_s);
       fine_stretches_.emplace(scene_, *fine_track_);
     }
-    const double fine_m = analysis_at(log_interval, *fine_stretches_).true_m;
-    answer.step_effect = std::abs(fine_m / analysis.true_m - 1.0);
+    const double fine_m =
+        analysis_at(log_interval, *fine_stretches_).true_errors.worst(allowed).error_m;
+    answer.step_effect = std::abs(fine_m / answer.true_m - 1.0);
   }
 
-  const Scene& scene_;
+  Scene scene_;
   const IntervalConfig& config_;
   ErrorTrack track_;
   Stretches stretches_;
@@ -175,17 +209,17 @@ class Solver {
 
 }  // namespace
 
-std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<double>& limits_m,
+std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<AllowedError>& limits,
                                       const IntervalConfig& config,
                                       const std::function<void(double fraction)>& progress) {
   validate(scene);
-  validate(scene, limits_m, config);
-  Solver solver(scene, config);
+  validate(scene, limits, config);
+  Solver solver(scene, limits, config);
   std::vector<Interval> answers;
-  for (const double limit_m : limits_m) {
-    answers.push_back(solver.solve(limit_m));
+  for (const AllowedError& allowed : limits) {
+    answers.push_back(solver.solve(allowed));
     if (progress) {
-      progress(static_cast<double>(answers.size()) / static_cast<double>(limits_m.size()));
+      progress(static_cast<double>(answers.size()) / static_cast<double>(limits.size()));
     }
   }
   solver.add_free_inertial(answers);

@@ -31,23 +31,28 @@ std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
   return scenes;
 }
 
+/// Those of a table of lengths too, unless the scene's own limit is a preset or grows with the way.
 /// @throws Error when an answer is to be confirmed that was not asked for.
-std::vector<double> limits_of(const IntervalChoice& choice, double own_m) {
-  std::vector<double> limits_m = choice.scene.limits_m;
-  if (limits_m.empty()) {
-    limits_m = {1.0, 3.0, 10.0, 30.0, 100.0};
-    if (std::ranges::count(limits_m, own_m) == 0) limits_m.push_back(own_m);
-    std::ranges::sort(limits_m);
+std::vector<sim::AllowedError> limits_to_solve(const IntervalChoice& choice,
+                                               const sim::ErrorLimit& own) {
+  std::vector<sim::AllowedError> limits = limits_of(choice.scene.limit.limits);
+  if (limits.empty()) {
+    const bool is_alone = !own.preset.empty() || own.share > 0.0;
+    if (!is_alone) limits = {1.0, 3.0, 10.0, 30.0, 100.0};
+    if (std::ranges::count(limits, own.allowed()) == 0) limits.push_back(own.allowed());
+    std::ranges::sort(limits, {}, &sim::AllowedError::limit_m);
   }
-  for (const double limit_m : choice.confirm_limits_m) {
-    if (std::ranges::count(limits_m, limit_m) > 0) continue;
-    throw Error(fmt::format("--confirm-limit {:g}: not among the limits, which are {:g} m", limit_m,
-                            fmt::join(limits_m, ", ")));
+  for (const sim::AllowedError& limit : limits_of(choice.confirm_limits)) {
+    if (std::ranges::count(limits, limit) > 0) continue;
+    std::vector<std::string> asked;
+    for (const sim::AllowedError& allowed : limits) asked.push_back(text_of(allowed));
+    throw Error(fmt::format("--confirm-limit {}: not among the limits, which are {}",
+                            text_of(limit), fmt::join(asked, ", ")));
   }
-  return limits_m;
+  return limits;
 }
 
-void solve_limits(SolvedImu& imu, const std::vector<double>& limits_m,
+void solve_limits(SolvedImu& imu, const std::vector<sim::AllowedError>& limits,
                   const std::function<void(double)>& progress, Json& series) {
   std::map<double, std::array<double, 2>> errors_m;  // by interval
   SeriesTable free_inertial({"t_s", "true_m"});
@@ -58,7 +63,7 @@ void solve_limits(SolvedImu& imu, const std::vector<double>& limits_m,
   config.free_inertial_observer = [&free_inertial](double t_s, double error_m) {
     free_inertial.add({t_s, error_m});
   };
-  for (const sim::Interval& answer : solve_intervals(imu.scene, limits_m, config, progress)) {
+  for (const sim::Interval& answer : solve_intervals(imu.scene, limits, config, progress)) {
     imu.limits.push_back({answer});
   }
   SeriesTable curve({"interval_s", "true_m", "claimed_m"});
@@ -118,7 +123,7 @@ void solve_aiding(SolvedImu& imu) {
     config.tolerance = 1e-2;
     config.with_step_effect = false;
     imu.aided.push_back({name, have_same_aiding(vehicle, *imu.scene.vehicle),
-                         solve_intervals(scene, {scene.limit.limit_m}, config).front()});
+                         solve_intervals(scene, {scene.limit.allowed()}, config).front()});
     bar.show(static_cast<double>(imu.aided.size()) / static_cast<double>(sets.size()));
   }
 }
@@ -144,9 +149,9 @@ void confirm(SolvedImu& imu, const IntervalChoice& choice, const sim::Ranks& ran
   sim::Scene scene = imu.scene;
   scene.trials = choice.confirm_trials;
   const sim::ErrorTrack track = sim::error_track(scene);
-  const std::vector<double>& asked_m = choice.confirm_limits_m;
+  const std::vector<sim::AllowedError> asked = limits_of(choice.confirm_limits);
   for (SolvedLimit& answer : imu.limits) {
-    const bool is_asked = asked_m.empty() || std::ranges::count(asked_m, answer.interval.limit_m);
+    const bool is_asked = asked.empty() || std::ranges::count(asked, answer.interval.allowed()) > 0;
     if (has_interval(answer) && is_asked) try_trials(scene, track, ranks, answer, sim::confirm);
   }
 }
@@ -169,7 +174,7 @@ std::vector<Cell> cells_to_check(std::vector<SolvedImu>& solved, const IntervalC
     const bool is_named = !choice.scene.imus.empty() || scene.imu_name == own_imu;
     for (SolvedLimit& answer : imu.limits) {
       if (!has_interval(answer)) continue;
-      const bool is_owed = is_named && answer.interval.limit_m == scene.limit.limit_m;
+      const bool is_owed = is_named && answer.interval.allowed() == scene.limit.allowed();
       cells.push_back({&imu, &answer, is_owed, increments * sim::kFewestTrials});
     }
   }
@@ -204,7 +209,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
   as_written.imus.clear();
   as_written.range.reset();
   const sim::Scene own = scene_of(as_written);
-  const std::vector<double> limits_m = limits_of(choice, own.limit.limit_m);
+  const std::vector<sim::AllowedError> limits = limits_to_solve(choice, own.limit);
   const std::vector<sim::Scene> scenes = scenes_to_solve(choice.scene);
   std::vector<SolvedImu> solved;
   Progress bar("interval");
@@ -215,9 +220,9 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
     };
     SolvedImu imu{scene};
     if (scene.gnss.outages.empty()) {
-      solve_limits(imu, limits_m, progress, series);
+      solve_limits(imu, limits, progress, series);
     } else {
-      imu.coasts = sim::coasts(scene, sim::error_track(scene), scene.limit.limit_m);
+      imu.coasts = sim::coasts(scene, sim::error_track(scene), scene.limit.allowed());
     }
     solved.push_back(std::move(imu));
   }

@@ -15,7 +15,7 @@ namespace leeway::cli {
 struct IntervalChoice {
   SceneChoice scene{};
   int confirm_trials{0};
-  std::vector<double> confirm_limits_m{};
+  std::vector<std::string> confirm_limits{};  ///< as sim::allowed_error()
   bool no_check{false};
 };
 

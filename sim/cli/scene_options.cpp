@@ -23,9 +23,8 @@ sim::Scene with_imu(sim::Scene scene, const NamedImu& imu, std::optional<sim::Bi
 
 sim::Scene changed_scene(const SceneChoice& choice) {
   sim::Scene scene = scene_from_file(choice.file, choice.at_s);
-  scene.limit.metric = choice.metric.value_or(scene.limit.metric);
+  change_limit(choice.limit, scene.limit);
   if (!choice.filter.empty()) sim::read_filter_file(choice.filter, scene);
-  if (!choice.limits_m.empty()) scene.limit.limit_m = choice.limits_m.front();
   if (choice.interval_s) scene.gnss.interval_s = *choice.interval_s;
   if (choice.trials) scene.trials = *choice.trials;
   if (choice.first_seed) scene.first_seed = *choice.first_seed;
@@ -81,12 +80,7 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
       "how the filter runs, in place of the scene's [filter]: a file that leeway reduce "
       "--write made",
       "FILE.toml");
-  app.add_option("--metric", choice.metric, "how a horizontal error is measured")
-      ->transform(named<HorizontalMetric>());
-  app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
-      ->check(positive())
-      ->type_name("M")
-      ->delimiter(',');
+  add_limit_options(app, choice.limit);
   app.add_option("--at", choice.at_s,
                  "end the scene at this time, s, earlier or later than it does")
       ->check(CLI::Range(1.0, 1e6))
@@ -127,7 +121,7 @@ sim::Scene scene_of(const SceneChoice& choice) {
 }
 
 Json scene_json(const sim::Scene& scene) {
-  return {{"scene", scene.name},
+  Json json{{"scene", scene.name},
           {"motion", scene.trajectory.name},
           {"duration_s", scene.duration_s},
           {"imu_rate_hz", scene.imu_rate_hz},
@@ -137,11 +131,11 @@ Json scene_json(const sim::Scene& scene) {
           {"bias_model", name(sim::bias_model_of(scene.imu))},
           {"gnss", gnss_json(scene.gnss)},
           {"gate_probability", scene.filter.gate_probability},
-          {"metric", name(scene.limit.metric)},
-          {"limit_m", scene.limit.limit_m},
           {"last_s", scene.limit.last_s},
           {"trials", scene.trials},
           {"first_seed", scene.first_seed}};
+  json.update(limit_json(scene.limit));
+  return json;
 }
 
 Json timed_input_json(const sim::Scene& scene, int repeat) {

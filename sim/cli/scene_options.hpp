@@ -5,6 +5,7 @@
 #include "leeway/sim/scene/scene.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
 #include "sim/cli/answer.hpp"
+#include "sim/cli/limit_options.hpp"
 
 namespace leeway::cli {
 
@@ -13,8 +14,7 @@ struct SceneChoice {
   std::vector<std::string> imus{};           ///< empty: the scene's
   std::optional<RangeEnd> range{};           ///< of those that are Table 1 classes; absent: mid
   std::optional<sim::BiasModel> bias{};      ///< absent: as the scene or the model has it
-  std::optional<HorizontalMetric> metric{};  ///< absent: the scene's
-  std::vector<double> limits_m{};            ///< empty: the scene's
+  LimitChoice limit{};
   std::filesystem::path filter{};            ///< how the filter runs; empty: as the scene has it
   std::optional<double> at_s{};
   std::optional<double> interval_s{};

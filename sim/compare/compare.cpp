@@ -138,10 +138,12 @@ std::function<void(double)> part(const CompareOptions& options, double from, dou
 
 }  // namespace
 
-double r95_of(std::vector<double> values) {
+double r95_of(std::vector<double> values) { return quantile_of(std::move(values), 0.95); }
+
+double quantile_of(std::vector<double> values, double probability) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto rank =
-      static_cast<std::ptrdiff_t>(std::ceil(0.95 * static_cast<double>(values.size())) - 1.0);
+  const auto count = static_cast<double>(values.size());
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(probability * count) - 1.0);
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "leeway/model/error_metric.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "sim/compare/variant_run.hpp"
 #include "sim/trials/campaign_sums.hpp"
@@ -63,7 +64,8 @@ CaseRun scored_run(const FilterCase& one, const RecordedTrial& trial, std::uint6
   run_case(one, trial,
            [&run](const Estimate& truth, const Estimate& estimate, const ErrorMatrix* P) {
              if (run.score.finite) score_epoch(run.score, truth, estimate, P);
-             run.error_ne_m.emplace_back(position_error_n_m(truth, estimate).head<2>());
+             run.error_n_m.emplace_back(position_error_n_m(truth, estimate));
+             run.course_rad.push_back(course_over_ground_rad(truth.nav));
            });
   if (!run.score.finite) run.score.diverged = true;
   return run;
@@ -120,7 +122,7 @@ std::vector<double> radial_errors_m(const std::vector<CaseRun>& runs) {
   std::vector<double> radii_m;
   for (const CaseRun& run : runs) {
     if (!run.score.finite) continue;
-    for (const Eigen::Vector2d& error_m : run.error_ne_m) radii_m.push_back(error_m.norm());
+    for (const Eigen::Vector3d& e : run.error_n_m) radii_m.push_back(e.head<2>().norm());
   }
   return radii_m;
 }

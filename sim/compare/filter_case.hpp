@@ -23,7 +23,8 @@ struct FilterCase {
 /// One case in one trial.
 struct CaseRun {
   TrialScore score{};
-  std::vector<Eigen::Vector2d> error_ne_m{};  ///< before scored fixes; worth nothing if not finite
+  std::vector<Eigen::Vector3d> error_n_m{};  ///< before scored fixes; worth nothing if not finite
+  std::vector<double> course_rad{};          ///< of the truth then, over ground
 };
 
 /// All cases in all trials of the first one's plan: runs[case][trial]. The same bits on any number

@@ -22,6 +22,10 @@ constexpr double kWorthwhile = 0.05;  // of what the model costs: to less, costs
 
 void validate(const Scene& scene, const ReductionOptions& options) {
   require("reduce", "repeat", options.repeat, between(1.0, 1000.0));
+  if (scene.limit.share > 0.0) {
+    throw Error("reduce: the limit, " + text_of(scene.limit.allowed()) +
+                ", grows with the distance since a fix: give one in metres alone, as --limit 10");
+  }
   if (scene.gnss.latency_s >= scene.gnss.interval_s) {
     throw Error("reduce: latency_s of the fixes is " + std::to_string(scene.gnss.latency_s) +
                 ", must be less than their interval_s, " + std::to_string(scene.gnss.interval_s));

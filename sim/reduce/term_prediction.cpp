@@ -1,8 +1,10 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/model/process_noise.hpp"
@@ -49,36 +51,46 @@ ErrorMatrix block(const ErrorMoment<2>& Z, int row, int column) {
 /// Sums over scored fixes.
 class PredictionSums {
  public:
-  void add(const Pair& pair, const LinearFilterRun::Epoch& epoch, const Eigen::Vector3d& r_e_m) {
-    const auto horizontal = [&r_e_m](const ErrorMatrix& P) {
-      return horizontal_covariance(r_e_m, P.block<3, 3>(kDr, kDr));
+  void add(const Pair& pair, const LinearFilterRun::Epoch& epoch, const NavState& at) {
+    const auto position = [&at](const ErrorMatrix& P) {
+      return ned_covariance(at.r_e_m, P.block<3, 3>(kDr, kDr));
     };
+    const Eigen::Matrix3d C_tn =
+        Eigen::AngleAxisd(-course_over_ground_rad(at), Eigen::Vector3d::UnitZ())
+            .toRotationMatrix();
     const ErrorMatrix mean_sq = epoch.mean * epoch.mean.transpose();
     const ErrorMoment<2> Z = pair.covariance();
     const ErrorMatrix moment = block(Z, 1, 1) + mean_sq;
     const ErrorMatrix difference =
         block(Z, 0, 0) - block(Z, 0, 1) - block(Z, 1, 0) + block(Z, 1, 1) + mean_sq;
     ++epochs_;
-    moment_m2_ += horizontal(moment);
-    claimed_m2_ += horizontal(epoch.claimed).trace();
-    difference_m2_ += horizontal(difference).trace();
+    moment_n_m2_ += position(moment);
+    moment_t_m2_ += C_tn * position(moment) * C_tn.transpose();
+    claimed_m2_ += horizontal_m2(position(epoch.claimed));
+    difference_m2_ += horizontal_m2(position(difference));
     nees_ += expected_nees(moment, epoch.claimed);
   }
 
-  PredictedAccuracy result(HorizontalMetric metric) const {
+  PredictedAccuracy result(ErrorMetric metric) const {
     const double per_epoch = 1.0 / epochs_;
     PredictedAccuracy r;
-    r.error_m = horizontal_error_m(metric, per_epoch * moment_m2_);
-    r.rms_m = std::sqrt(per_epoch * moment_m2_.trace());
-    r.rms_over_sigma = std::sqrt(moment_m2_.trace() / claimed_m2_);
+    const Eigen::Matrix3d& moment_m2 = asks_for_course(metric) ? moment_t_m2_ : moment_n_m2_;
+    r.error_m = error_size_m(metric, per_epoch * moment_m2, 0.0);
+    r.rms_m = std::sqrt(per_epoch * horizontal_m2(moment_n_m2_));
+    r.rms_over_sigma = std::sqrt(horizontal_m2(moment_n_m2_) / claimed_m2_);
     r.nees = per_epoch * nees_;
     r.difference_m = std::sqrt(per_epoch * std::max(0.0, difference_m2_));
     return r;
   }
 
  private:
+  static double horizontal_m2(const Eigen::Matrix3d& P_n_m2) {
+    return P_n_m2.topLeftCorner<2, 2>().trace();
+  }
+
   int epochs_{0};
-  Eigen::Matrix2d moment_m2_{Eigen::Matrix2d::Zero()};
+  Eigen::Matrix3d moment_n_m2_{Eigen::Matrix3d::Zero()};  // north, east, down
+  Eigen::Matrix3d moment_t_m2_{Eigen::Matrix3d::Zero()};  // along and across the track, down
   double claimed_m2_{0.0};
   double difference_m2_{0.0};
   double nees_{0.0};
@@ -122,7 +134,7 @@ struct TermPrediction::Track {
       if (fix.scored) {
         Pair without_fix = pair;
         advance(without_fix, now, fix.arrives + 1);
-        show(without_fix, *epoch++, path.at_end_of(fix.arrives).r_e_m);
+        show(without_fix, *epoch++, path.at_end_of(fix.arrives));
       }
       const Time t = path.states[now].time;
       const FixRows rows = path.fix_rows(fix.at, scene.gnss.errors.lever_arm_b_m, weight.of(t));
@@ -150,7 +162,7 @@ PredictedAccuracy TermPrediction::of(const FilterModel& model) const {
   PredictionSums sums;
   track_->run(model, pass,
               [&sums](const Pair& pair, const LinearFilterRun::Epoch& epoch,
-                      const Eigen::Vector3d& r_e_m) { sums.add(pair, epoch, r_e_m); });
+                      const NavState& at) { sums.add(pair, epoch, at); });
   return sums.result(track_->path.plan.scene().limit.metric);
 }
 
@@ -158,10 +170,10 @@ double TermPrediction::contribution_m(const std::vector<ErrorSource>& sources) c
   double sum_m2 = 0.0;
   int epochs = 0;
   track_->run(track_->full, track_->full_pass,
-              [&](const Pair& pair, const LinearFilterRun::Epoch&, const Eigen::Vector3d& r_e_m) {
+              [&](const Pair& pair, const LinearFilterRun::Epoch&, const NavState& at) {
                 ++epochs;
                 for (const auto& [source, mean_sq_n_m2] :
-                     pair.error_budget(ned_to_ecef(geodetic_from_ecef(r_e_m)))) {
+                     pair.error_budget(ned_to_ecef(geodetic_from_ecef(at.r_e_m)))) {
                   if (std::find(sources.begin(), sources.end(), source) == sources.end()) continue;
                   sum_m2 += mean_sq_n_m2.topLeftCorner<2, 2>().trace();
                 }

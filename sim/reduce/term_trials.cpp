@@ -2,21 +2,63 @@
 #include <cmath>
 #include <utility>
 
+#include "leeway/model/error_metric.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 
 namespace leeway::sim {
 namespace {
 
-double empirical_error_m(HorizontalMetric metric, const std::vector<CaseRun>& runs) {
-  std::vector<double> radii_m = radial_errors_m(runs);
-  if (metric == HorizontalMetric::kR95) return r95_of(std::move(radii_m));
-  Eigen::Vector2d sum_sq_m2 = Eigen::Vector2d::Zero();
+/// What f makes of the errors of the trials that are finite, north, east, down, and of the course.
+template <class F>
+std::vector<double> sizes_m(const std::vector<CaseRun>& runs, F&& f) {
+  std::vector<double> sizes;
   for (const CaseRun& run : runs) {
     if (!run.score.finite) continue;
-    for (const Eigen::Vector2d& error_m : run.error_ne_m) sum_sq_m2 += error_m.cwiseAbs2();
+    for (std::size_t i = 0; i < run.error_n_m.size(); ++i) {
+      sizes.push_back(std::abs(f(run.error_n_m[i], run.course_rad[i])));
+    }
   }
-  sum_sq_m2 /= static_cast<double>(radii_m.size());
-  return std::sqrt(metric == HorizontalMetric::kDrms ? sum_sq_m2.sum() : sum_sq_m2.maxCoeff());
+  return sizes;
+}
+
+/// Of north, east and down.
+Eigen::Matrix3d second_moment_m2(const std::vector<CaseRun>& runs) {
+  Eigen::Matrix3d sum_m2 = Eigen::Matrix3d::Zero();
+  double epochs = 0.0;
+  for (const CaseRun& run : runs) {
+    if (!run.score.finite) continue;
+    for (const Eigen::Vector3d& error_m : run.error_n_m) sum_m2 += error_m * error_m.transpose();
+    epochs += static_cast<double>(run.error_n_m.size());
+  }
+  return sum_m2 / epochs;
+}
+
+double empirical_error_m(ErrorMetric metric, const std::vector<CaseRun>& runs) {
+  using Error = Eigen::Vector3d;
+  switch (metric) {
+    case ErrorMetric::kCross95:
+      return quantile_of(sizes_m(runs,
+                                 [](const Error& e, double course_rad) {
+                                   return e.y() * std::cos(course_rad) -
+                                          e.x() * std::sin(course_rad);
+                                 }),
+                         0.95);
+    case ErrorMetric::kAlong95:
+      return quantile_of(sizes_m(runs,
+                                 [](const Error& e, double course_rad) {
+                                   return e.x() * std::cos(course_rad) +
+                                          e.y() * std::sin(course_rad);
+                                 }),
+                         0.95);
+    case ErrorMetric::kVertical95:
+      return quantile_of(sizes_m(runs, [](const Error& e, double) { return e.z(); }), 0.95);
+    case ErrorMetric::kDrms:
+    case ErrorMetric::kAxis:
+    case ErrorMetric::k3d:
+      return error_size_m(metric, second_moment_m2(runs), 0.0);
+    default:
+      return quantile_of(radial_errors_m(runs), radius_probability(metric));
+  }
 }
 
 double difference_m(const std::vector<CaseRun>& runs, const std::vector<CaseRun>& others) {
@@ -24,9 +66,9 @@ double difference_m(const std::vector<CaseRun>& runs, const std::vector<CaseRun>
   std::size_t epochs = 0;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (!runs[k].score.finite || !others[k].score.finite) continue;
-    epochs += runs[k].error_ne_m.size();
-    for (std::size_t i = 0; i < runs[k].error_ne_m.size(); ++i) {
-      sum_m2 += (runs[k].error_ne_m[i] - others[k].error_ne_m[i]).squaredNorm();
+    epochs += runs[k].error_n_m.size();
+    for (std::size_t i = 0; i < runs[k].error_n_m.size(); ++i) {
+      sum_m2 += (runs[k].error_n_m[i] - others[k].error_n_m[i]).head<2>().squaredNorm();
     }
   }
   return std::sqrt(sum_m2 / static_cast<double>(epochs));
@@ -73,7 +115,7 @@ FilterCase case_of(const TrialPlan& plan, const FilterModel& model) {
 
 std::vector<MeasuredAccuracy> measured(const std::vector<FilterCase>& cases, int threads,
                                        const std::function<void(double)>& progress) {
-  const HorizontalMetric metric = cases.front().plan->scene().limit.metric;
+  const ErrorMetric metric = cases.front().plan->scene().limit.metric;
   const auto runs = run_cases(cases, threads, progress);
   std::vector<MeasuredAccuracy> result;
   for (const auto& of_case : runs) {

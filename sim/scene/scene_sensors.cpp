@@ -28,8 +28,6 @@ constexpr Quantity kTilt{"tilt", kAngles, zero_or(1e-7, 30.0 * kRadPerDeg)};
 constexpr Quantity kInitialHeading{"heading", kAngles, zero_or(1e-7, 180.0 * kRadPerDeg)};
 constexpr Quantity kInitialVelocity{"velocity", kSpeeds, zero_or(1e-4, 100.0)};
 constexpr Quantity kInitialPosition{"position", kLengths, zero_or(1e-3, 1e5)};
-constexpr Quantity kLast{"last", kTimes, between(1.0, kLongestSceneS)};
-constexpr Quantity kLimit{"limit", kLengths, between(1e-2, 1e5)};
 
 /// A sigma of position: horizontal and vertical, or one for each axis.
 struct PositionSigma {
@@ -181,14 +179,6 @@ InitialSigma read_initial(TomlSection& section) {
   sigma.velocity_mps = section.required(section.number(kInitialVelocity));
   sigma.position_m = section.required(section.number(kInitialPosition));
   return sigma;
-}
-
-ErrorLimit read_limit(TomlSection& section) {
-  ErrorLimit limit;
-  limit.metric = section.choice<HorizontalMetric>("metric").value_or(limit.metric);
-  set(section, kLimit, limit.limit_m);
-  set(section, kLast, limit.last_s);
-  return limit;
 }
 
 }  // namespace leeway::sim

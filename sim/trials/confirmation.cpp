@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "leeway/model/chi_square.hpp"
-#include "leeway/model/horizontal.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "sim/trials/campaign_sums.hpp"
 #include "sim/trials/shared_trials.hpp"
@@ -40,24 +40,42 @@ LinearRun linear_run(const Scene& scene, const ErrorTrack& track) {
   CovarianceConfig config;
   config.observer = [&](const CovariancePoint& point) {
     if (point.moment != CovariancePoint::Moment::kBeforeFix) return;
-    const auto P = horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
-    run.errors_m.push_back(horizontal_error_m(scene.limit.metric, P));
+    const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
+    run.errors_m.push_back(error_by_metric_m(scene, track, point.t_s, P_n_m2));
   };
   run.analysis = analyze(scene, track, config);
   return run;
 }
 
 /// Of all trials but one; none is left out where `without` is none of them.
+/// @param axes  of north, east, down: so many count
 double rms_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
-                       double linear_drms_m) {
+                       const CovarianceAnalysis& linear, Eigen::Index axes = 2) {
   double sum_m2 = 0.0;
   double epochs = 0.0;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (k == without || !trials[k].score.finite) continue;
-    sum_m2 += trials[k].score.error_sq_n_m2.head<2>().sum();
+    sum_m2 += trials[k].score.error_sq_n_m2.head(axes).sum();
     epochs += static_cast<double>(trials[k].score.epochs);
   }
-  return std::sqrt(sum_m2 / epochs) / linear_drms_m;
+  return std::sqrt(sum_m2 / epochs) / linear.true_rms_n_m.head(axes).norm();
+}
+
+/// The probability that a metric is the quantile of; 0 of a root mean square.
+double probability_of(ErrorMetric metric) {
+  const bool is_of_an_axis = asks_for_course(metric) || metric == ErrorMetric::kVertical95;
+  return is_of_an_axis ? 0.95 : radius_probability(metric);
+}
+
+/// What a metric that is a quantile is one of.
+double size_of_error_m(ErrorMetric metric, const Eigen::Vector3d& error_n_m, double course_rad) {
+  const Eigen::Vector2d along(std::cos(course_rad), std::sin(course_rad));
+  if (metric == ErrorMetric::kAlong95) return std::abs(along.dot(error_n_m.head<2>()));
+  if (metric == ErrorMetric::kCross95) {
+    return std::abs(along.x() * error_n_m.y() - along.y() * error_n_m.x());
+  }
+  if (metric == ErrorMetric::kVertical95) return std::abs(error_n_m.z());
+  return error_n_m.head<2>().norm();
 }
 
 double quantile_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
@@ -81,8 +99,8 @@ struct TrialRun {
   double error_over_true{};
   double scatter{};
 
-  /// By the scene's metric, at the worst fix.
-  double error_m() const { return linear.true_m * error_over_true; }
+  /// Of the worst fix, over what is allowed there.
+  double excess() const { return std::log(linear.true_m / linear.allowed_m * error_over_true); }
   bool diverges() const { return campaign.diverged > 0 || !std::isfinite(error_over_true); }
 
   /// How many sigmas of its scatter the ratio is beyond kAgreement; below 0: within it.
@@ -94,17 +112,18 @@ struct TrialRun {
 
 /// Source of the scatter: the jackknife, Efron and Tibshirani (1993) (11.5).
 TrialRun summed(const std::vector<SharedTrial>& trials, const CovarianceAnalysis& linear,
-                HorizontalMetric metric) {
+                ErrorMetric metric) {
   TrialRun run{.linear = linear};
   CampaignSums sums;
   for (const SharedTrial& trial : trials) sums.add(trial.score);
   run.campaign = result_of(sums);
   const std::size_t n = trials.size();
   const auto ratio = [&](std::size_t without) {
-    return metric == HorizontalMetric::kR95 ? quantile_over_linear(trials, without, 0.95)
-                                            : rms_over_linear(trials, without, linear.true_drms_m);
+    const double probability = probability_of(metric);
+    if (probability > 0.0) return quantile_over_linear(trials, without, probability);
+    return rms_over_linear(trials, without, linear, metric == ErrorMetric::k3d ? 3 : 2);
   };
-  run.rms_over_true = rms_over_linear(trials, n, linear.true_drms_m);
+  run.rms_over_true = rms_over_linear(trials, n, linear);
   run.error_over_true = ratio(n);
   double sum_sq = 0.0;
   for (std::size_t k = 0; k < n; ++k) sum_sq += std::pow(ratio(k) - run.error_over_true, 2);
@@ -120,10 +139,12 @@ class Confirmer {
       : scene_(scene), track_(track), ranks_(ranks), progress_(std::move(progress)) {}
 
   Confirmation confirm(const Interval& answer) {
+    scene_.limit.allow(answer.allowed());
     return judged(answer, run(answer.interval_s));
   }
 
   Confirmation check(const Interval& answer) {
+    scene_.limit.allow(answer.allowed());
     scene_.trials = kFewestTrials;
     TrialRun first = run(answer.interval_s);
     while (!first.diverges() && std::abs(first.excess_sigmas()) < kClearSigmas &&
@@ -158,11 +179,17 @@ class Confirmer {
     const TrialPlan plan(scene_, linear.analysis.window_s);
     const auto over_linear = [&](std::size_t k, const TrialEpoch& epoch) -> std::optional<double> {
       if (k >= linear.errors_m.size() || !plan.fixes()[k].scored) return {};
-      return epoch.error_h_m / linear.errors_m[k];
+      return size_m(epoch) / linear.errors_m[k];
     };
     trials_run_ += scene_.trials;
     return summed(shared_trials(plan, over_linear, ranks_, progress_), linear.analysis,
                   scene_.limit.metric);
+  }
+
+  double size_m(const TrialEpoch& epoch) const {
+    const ErrorMetric metric = scene_.limit.metric;
+    const double course_rad = asks_for_course(metric) ? track_.path().course_rad(epoch.t_s) : 0.0;
+    return size_of_error_m(metric, epoch.error_n_m, course_rad);
   }
 
   /// Secants in log(error) over log(interval) between an interval that keeps the limit and one that
@@ -173,7 +200,7 @@ class Confirmer {
     double log_s = std::log(answer.interval_s);
     double slope = 1.0;
     for (int i = 0; i < kMostSearches; ++i) {
-      const double excess = std::log(here.error_m() / answer.limit_m);
+      const double excess = here.excess();
       const bool diverges = here.diverges();
       if (!diverges && std::abs(excess) < kSearchTolerance) return std::exp(log_s);
       (diverges || excess > 0.0 ? lost : kept) = log_s;
@@ -182,7 +209,7 @@ class Confirmer {
       if (kept && lost && !(next > *kept && next < *lost)) next = 0.5 * (*kept + *lost);
       if (std::exp(next) > 0.5 * scene_.duration_s) break;
       here = run(std::exp(next));
-      const double moved = std::log(here.error_m() / answer.limit_m) - excess;
+      const double moved = here.excess() - excess;
       slope = diverges ? 1.0 : std::clamp(moved / (next - log_s), 0.3, 5.0);
       log_s = next;
     }

@@ -108,14 +108,14 @@ class Trial {
     const double t_s = to_seconds(now_);
     if (!belief) {
       constexpr double kUnknown = std::numeric_limits<double>::infinity();
-      observer_({t_s, kUnknown, kUnknown});
+      observer_({t_s, kUnknown, kUnknown, Eigen::Vector3d::Constant(kUnknown)});
       return;
     }
     const Estimate truth{truth_at(plan_.scene().trajectory, t_s).nav, {}};
     const Eigen::Matrix2d P_ne_m2 =
         horizontal_covariance(belief->estimate.nav.r_e_m, belief->P.block<3, 3>(kDr, kDr));
-    observer_({t_s, position_error_n_m(truth, belief->estimate).head<2>().norm(),
-               horizontal_error_m(HorizontalMetric::kR95, P_ne_m2)});
+    const Eigen::Vector3d error_n_m = position_error_n_m(truth, belief->estimate);
+    observer_({t_s, error_n_m.head<2>().norm(), horizontal_radius_m(P_ne_m2, 0.95), error_n_m});
   }
 
   const TrialPlan& plan_;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "leeway/ekf/ekf.hpp"
-#include "leeway/model/horizontal.hpp"
+#include "leeway/model/error_metric.hpp"
 
 namespace leeway {
 
@@ -27,7 +27,8 @@ struct TimeToLimit {
 /// (docs/theory/ekf/time_to_limit.md).
 TimeToLimit time_to_limit(const Ekf& filter, double limit_m, double probability = 0.95);
 
-/// The same, until the metric passes the limit.
-TimeToLimit time_to_limit(const Ekf& filter, double limit_m, HorizontalMetric metric);
+/// The same, until the metric passes the limit. The track is that of the present turn; of a vehicle
+/// that stands, its forward axis: course_over_ground_rad().
+TimeToLimit time_to_limit(const Ekf& filter, double limit_m, ErrorMetric metric);
 
 }  // namespace leeway

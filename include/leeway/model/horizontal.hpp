@@ -1,30 +1,15 @@
 /// @file
-/// One number for the size of a horizontal position error: what a limit is stated in.
+/// The ellipse of a horizontal position error: how far from its middle errors come how often.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "leeway/earth/names.hpp"
-#include "leeway/model/error_state.hpp"
-
 namespace leeway {
-
-/// Measures of a horizontal position error.
-enum class HorizontalMetric {
-  kDrms,  ///< sqrt(P_NN + P_EE): the root mean squared radial error
-  kR95,   ///< the radius that 95 % of the errors stay within; 1.73 DRMS when N and E are alike
-  kAxis,  ///< 1 sigma of the worse of north and east
-};
-constexpr auto names(HorizontalMetric) { return std::array{"drms", "r95", "axis"}; }
 
 /// North-east covariance (m^2) of the position error at r_e_m.
 /// @param P_rr_e_m2  covariance of dr_e in ECEF axes
 Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
                                       const Eigen::Matrix3d& P_rr_e_m2);
-
-/// The metric of a zero-mean Gaussian error with this covariance, in m.
-/// @pre P is positive semidefinite.
-double horizontal_error_m(HorizontalMetric metric, const Eigen::Matrix2d& P_ne_m2);
 
 /// The radius within which a zero-mean Gaussian error stays with the given probability, in m.
 /// Relative error below 1e-9. No heap. @pre P is positive semidefinite, 0 < probability < 1.

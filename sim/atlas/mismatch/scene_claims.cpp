@@ -36,7 +36,7 @@ LinearR95 linear_r95(const Scene& scene, const ErrorTrack& track) {
   config.observer = [&](const CovariancePoint& point) {
     if (point.moment != CovariancePoint::Moment::kBeforeFix || point.t_s <= kDenseS) return;
     const auto P = horizontal_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
-    r95_m[epoch_at(point.t_s)] = horizontal_error_m(HorizontalMetric::kR95, P);
+    r95_m[epoch_at(point.t_s)] = horizontal_radius_m(P, 0.95);
   };
   analyze(scene, track, config);
   return r95_m;

@@ -123,12 +123,13 @@ void print_sources(std::vector<Source> sources) {
 /// Whether the scene's limit is kept: before every fix that counts, and at the end of each outage.
 void print_limit(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
                  const std::vector<sim::Coast>& coasts) {
-  const double limit_m = scene.limit.limit_m;
-  const bool keeps = r.true_m <= limit_m;
-  fmt::print("Keeps {:g} m there: {}.\n", limit_m, keeps ? "yes" : "no");
+  const std::string limit = words_of(scene.limit.allowed());
+  fmt::print("{}", preset_line(scene.limit));
+  fmt::print("Keeps {} there, {:.6g} m: {}.\n", limit, r.allowed_m,
+             r.true_m <= r.allowed_m ? "yes" : "no");
   for (const sim::Coast& c : coasts) {
-    fmt::print("Outage of {:g} s at {:g} s: {:.3g} m at its end, {:.1f} s; keeps {:g} m: {}\n",
-               c.outage.duration_s, c.outage.start_s, c.end_error_m, c.end_s, limit_m,
+    fmt::print("Outage of {:g} s at {:g} s: {:.3g} m at its end, {:.1f} s; keeps {}: {}\n",
+               c.outage.duration_s, c.outage.start_s, c.end_error_m, c.end_s, limit,
                c.keeps_limit() ? "yes"
                                : fmt::format("no, for {:.1f} s only", c.coast_s));
   }
@@ -150,8 +151,8 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
                   const std::vector<sim::Coast>& coasts) {
   fmt::print("Scene '{}' ({}), {}, fixes every {:g} s, {:g} s\n", scene.name, scene.trajectory.name,
              scene.imu_name, scene.gnss.interval_s, scene.duration_s);
-  fmt::print("Largest horizontal error ({}) before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
-             name(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
+  fmt::print("Largest {} before a fix in the last {:g} s: {:.3f} m at {:g} s\n",
+             words_of(scene.limit.metric), r.window_s, r.true_m, r.worst_s);
   fmt::print("The filter claims {:.3f} m: {}.\n", r.claimed_m, optimism(r.true_m / r.claimed_m));
   print_limit(scene, r, coasts);
   print_vertical_channel(scene);
@@ -192,12 +193,13 @@ Json results_json(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
                             {"horizontal_share", source.horizontal_m2() / total_m2}});
   }
   return {{"true_m", r.true_m},
+          {"allowed_m", r.allowed_m},
           {"claimed_m", r.claimed_m},
           {"optimistic_by", r.true_m / r.claimed_m},
           {"true_drms_m", r.true_drms_m},
           {"claimed_drms_m", r.claimed_drms_m},
           {"worst_s", r.worst_s},
-          {"keeps_limit", r.true_m <= scene.limit.limit_m},
+          {"keeps_limit", r.true_m <= r.allowed_m},
           {"outages", outages_json(coasts)},
           {"window_s", r.window_s},
           {"fixes", r.fixes},
@@ -233,7 +235,7 @@ int run(const AnalyzeChoice& options) {
   }
   const sim::ErrorTrack track = sim::error_track(scene);
   const sim::CovarianceAnalysis result = sim::analyze(scene, track, config);
-  const std::vector<sim::Coast> coasts = sim::coasts(scene, track, scene.limit.limit_m);
+  const std::vector<sim::Coast> coasts = sim::coasts(scene, track, scene.limit.allowed());
   if (moments) writing([&] { moments->close(); });
   if (!options.error_budget.empty()) {
     write_file(options.error_budget, error_budget_csv(sources_of(result.error_budget)));

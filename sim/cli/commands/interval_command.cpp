@@ -40,10 +40,10 @@ void add_options(CLI::App& app, IntervalCommand& command) {
                      "run so many trials of the scene's estimator at every answer")
           ->check(CLI::Range(0, 1000000))
           ->type_name("N");
-  app.add_option("--confirm-limit", choice.confirm_limits_m,
-                 "confirm the answers for these limits only, m; several with commas")
+  app.add_option("--confirm-limit", choice.confirm_limits,
+                 "confirm the answers for these limits only; several with commas")
       ->delimiter(',')
-      ->type_name("M")
+      ->type_name("LIMIT")
       ->needs(confirm);
   app.add_flag("--no-check", choice.no_check, "no trials at all: the linear analysis alone")
       ->excludes(confirm);
@@ -53,9 +53,10 @@ void add_options(CLI::App& app, IntervalCommand& command) {
 const Command<IntervalCommand> kInterval{
     "interval", "The longest time between fixes for which the error stays within a limit",
     "Without --imu: the five classes of the source paper, and the scene's own IMU. Without\n"
-    "--limit: 1, 3, 10, 30 and 100 m, and the scene's own. Trials of the scene's estimator check\n"
-    "the scene's IMU, or those named, at the scene's limit, and others as far as some seconds\n"
-    "reach. A scene that scripts outages is asked for the error at their ends and the coast time.\n"
+    "--limit: 1, 3, 10, 30 and 100 m, and the scene's own; a preset alone. Trials of the scene's\n"
+    "estimator check the scene's IMU, or those named, at the scene's limit, and others as far as\n"
+    "some seconds reach. A scene that scripts outages is asked for the error at their ends and\n"
+    "the coast time.\n"
     "Examples:\n"
     "  leeway interval --scene docs/examples/scenes/town-car.toml\n"
     "  leeway interval --scene docs/examples/scenes/square-loop.toml --imu tactical --limit 10 "

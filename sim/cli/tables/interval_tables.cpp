@@ -40,7 +40,7 @@ std::string free_inertial(const sim::Interval& answer, double duration_s) {
 void print_answers(const std::vector<SolvedImu>& solved) {
   std::vector<std::string> headings{"<IMU"};
   for (const SolvedLimit& answer : solved.front().limits) {
-    headings.push_back(fmt::format("{:g} m", answer.interval.limit_m));
+    headings.push_back(words_of(answer.interval.allowed()));
   }
   Table table(headings);
   for (const SolvedImu& imu : solved) {
@@ -73,8 +73,8 @@ void print_conclusion(const std::vector<SolvedImu>& solved) {
                                return a.interval.limit_m < b.interval.limit_m;
                              });
   };
-  fmt::print("\nHow often a fix is needed to stay within {:g} m\n",
-             largest(solved.front()).interval.limit_m);
+  fmt::print("\nHow often a fix is needed to stay within {}\n",
+             words_of(largest(solved.front()).interval.allowed()));
   Table table({"<IMU", "<without calibration", "<calibrated by the fixes"});
   for (const SolvedImu& imu : solved) {
     const SolvedLimit answer = largest(imu);
@@ -91,7 +91,7 @@ void print_conclusion(const std::vector<SolvedImu>& solved) {
 /// Where the filter takes its error for smaller than it is.
 void print_optimism(const std::vector<SolvedImu>& solved) {
   constexpr double kWorthSaying = 1.05;
-  Table table({"<IMU", "limit, m", "interval, s", "true, m", "claimed, m", "<the filter is"});
+  Table table({"<IMU", "limit", "interval, s", "true, m", "claimed, m", "<the filter is"});
   bool any = false;
   double pessimism = 1.0;
   for (const SolvedImu& imu : solved) {
@@ -102,7 +102,7 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
       if (ratio < kWorthSaying) continue;
       any = true;
       table.add(
-          {imu.scene.imu_name, fmt::format("{:g}", a.limit_m), calibrated(a), number(a.true_m, 2),
+          {imu.scene.imu_name, words_of(a.allowed()), calibrated(a), number(a.true_m, 2),
            number(a.claimed_m, 2), fmt::format("optimistic by x{:.2f}", ratio)},
           Tone::kDoubtful);
     }
@@ -124,7 +124,7 @@ std::string verdict(const sim::Confirmation& c) {
 }
 
 void print_confirmations(const std::vector<SolvedImu>& solved) {
-  Table table({"<IMU", "limit, m", "linear, s", "trials", "error / linear", "+-", "RMS / sigma", "NEES",
+  Table table({"<IMU", "limit", "linear, s", "trials", "error / linear", "+-", "RMS / sigma", "NEES",
                "95 % band", "diverged", "<verdict"});
   bool any = false;
   for (const SolvedImu& imu : solved) {
@@ -133,7 +133,7 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
       any = true;
       const sim::Confirmation& c = *answer.confirmation;
       const sim::CampaignResult& r = c.campaign;
-      table.add({imu.scene.imu_name, fmt::format("{:g}", answer.interval.limit_m),
+      table.add({imu.scene.imu_name, words_of(answer.interval.allowed()),
                  seconds(answer.interval.interval_s), std::to_string(r.trials),
                  number(c.error_over_true, 3), number(c.scatter, 3), number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
                  fmt::format("{:.2f} to {:.2f}", r.nees_low, r.nees_high),
@@ -148,8 +148,8 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
   for (const SolvedImu& imu : solved) {
     for (const SolvedLimit& answer : imu.limits) {
       if (answer.failure.empty()) continue;
-      fmt::print("  {} at {:g} m could not be tried: {}\n", imu.scene.imu_name,
-                 answer.interval.limit_m, answer.failure);
+      fmt::print("  {} at {} could not be tried: {}\n", imu.scene.imu_name,
+                 words_of(answer.interval.allowed()), answer.failure);
     }
   }
 }
@@ -157,8 +157,8 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
 /// What each sensor and constraint of the vehicle buys.
 void print_aiding(const SolvedImu& imu) {
   if (imu.aided.empty()) return;
-  fmt::print("\nWhat the vehicle tells beside its receiver, {} at {:g} m, linear\n",
-             imu.scene.imu_name, imu.scene.limit.limit_m);
+  fmt::print("\nWhat the vehicle tells beside its receiver, {} at {}, linear\n",
+             imu.scene.imu_name, words_of(imu.scene.limit.allowed()));
   Table table({"<aiding", "interval, s", "<"});
   for (const AidedInterval& aided : imu.aided) {
     table.add({aided.aiding, calibrated(aided.interval), aided.is_the_scenes ? "the scene's" : ""});
@@ -173,7 +173,7 @@ void print_coasts(const std::vector<SolvedImu>& solved) {
   for (const SolvedImu& imu : solved) {
     for (const sim::Coast& c : imu.coasts) {
       table.add({imu.scene.imu_name, number(c.outage.start_s, 1), number(c.outage.duration_s, 1),
-                 number(c.end_error_m, 2), fmt::format("{:g}", c.limit_m),
+                 number(c.end_error_m, 2), number(c.end_allowed_m, 2),
                  c.keeps_limit() ? "yes" : fmt::format("no, at {:.1f} s", c.end_s),
                  std::isnan(c.coast_s) ? "to the scene's end" : seconds(c.coast_s)},
                 c.keeps_limit() ? Tone::kGood : Tone::kBad);
@@ -236,7 +236,8 @@ Json coasts_json(const SolvedImu& imu) {
     row["end_s"] = c.end_s;
     row["end_error_m"] = c.end_error_m;
     row["metric"] = name(imu.scene.limit.metric);
-    row["limit_m"] = c.limit_m;
+    row.update(limit_json(sim::AllowedError(c.limit_m, c.share)));
+    row["end_allowed_m"] = c.end_allowed_m;
     row["keeps_limit"] = c.keeps_limit();
     row["coast_s"] = c.coast_s;
     rows.push_back(std::move(row));
@@ -244,14 +245,14 @@ Json coasts_json(const SolvedImu& imu) {
   return rows;
 }
 
-Json limit_json(const SolvedImu& imu, const SolvedLimit& answer) {
+Json answer_row(const SolvedImu& imu, const SolvedLimit& answer) {
   const sim::Interval& a = answer.interval;
   const bool has_trials = answer.confirmation.has_value();
   Json row = imu_json(imu.scene.imu_name);
   row["motion"] = imu.scene.trajectory.name;
   row["bias_model"] = name(sim::bias_model_of(imu.scene.imu));
   row["metric"] = name(imu.scene.limit.metric);
-  row["limit_m"] = a.limit_m;
+  row.update(limit_json(a.allowed()));
   row["interval_s"] = a.interval_s;
   row["mark"] = name(answer.mark());
   row["answer_s"] = answer.interval_s();
@@ -261,6 +262,7 @@ Json limit_json(const SolvedImu& imu, const SolvedLimit& answer) {
   row["not_tried"] = answer.failure.empty() ? Json() : Json(answer.failure);
   row["outcome"] = name(a.outcome);
   row["error_m"] = a.true_m;
+  row["allowed_m"] = a.allowed_m;
   row["claimed_error_m"] = a.claimed_m;
   row["settled"] = a.settled;
   row["covariance_step_effect"] = a.step_effect;
@@ -270,11 +272,12 @@ Json limit_json(const SolvedImu& imu, const SolvedLimit& answer) {
 Json aided_json(const SolvedImu& imu) {
   Json rows = Json::array();
   for (const AidedInterval& aided : imu.aided) {
-    rows.push_back({{"aiding", aided.aiding},
-                    {"is_the_scenes", aided.is_the_scenes},
-                    {"imu", imu.scene.imu_name},
-                    {"limit_m", aided.interval.limit_m},
-                    {"interval_s", aided.interval.interval_s}});
+    Json row = limit_json(aided.interval.allowed());
+    row.update({{"aiding", aided.aiding},
+                {"is_the_scenes", aided.is_the_scenes},
+                {"imu", imu.scene.imu_name},
+                {"interval_s", aided.interval.interval_s}});
+    rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -295,15 +298,16 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
                "that counts\n",
                scene.gnss.settle_interval_s, scene.gnss.settle_s);
   }
+  fmt::print("{}", preset_line(scene.limit));
   if (solved.front().limits.empty()) {
-    fmt::print("The scene has outages: the error ({}) at their ends, with fixes every {:g} s else\n",
-               name(scene.limit.metric), scene.gnss.interval_s);
+    fmt::print("The scene has outages: the {} at their ends, fixes every {:g} s else\n",
+               words_of(scene.limit.metric), scene.gnss.interval_s);
     return print_coasts(solved);
   }
   fmt::print(
-      "Time without fixes from a perfect start / longest time between fixes, s, for a horizontal "
-      "error ({}) below\n",
-      name(scene.limit.metric));
+      "Time without fixes from a perfect start / longest time between fixes, s, for the {} "
+      "below\n",
+      words_of(scene.limit.metric));
   print_answers(solved);
   for (const SolvedImu& imu : solved) print_aiding(imu);
   print_conclusion(solved);
@@ -317,12 +321,14 @@ Json interval_json(const std::vector<SolvedImu>& solved) {
   Json coasts = Json::array();
   Json aided = Json::array();
   for (const SolvedImu& imu : solved) {
-    for (const SolvedLimit& answer : imu.limits) results.push_back(limit_json(imu, answer));
+    for (const SolvedLimit& answer : imu.limits) results.push_back(answer_row(imu, answer));
     for (const Json& row : coasts_json(imu)) coasts.push_back(row);
     for (const Json& row : aided_json(imu)) aided.push_back(row);
   }
   Json input = scene_json(solved.front().scene);
-  for (const char* varies : {"imu_model", "bias_model", "limit_m"}) input.erase(varies);
+  for (const char* varies : {"imu_model", "bias_model", "limit", "limit_m", "share"}) {
+    input.erase(varies);
+  }
   Json answer = answer_json("interval", std::move(input), std::move(results));
   if (!coasts.empty()) answer["outages"] = std::move(coasts);
   if (!aided.empty()) answer["aiding"] = std::move(aided);

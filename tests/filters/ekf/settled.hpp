@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "leeway/ekf/ekf.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
@@ -53,19 +54,25 @@ inline Settled settled(const sim::Trajectory& trajectory, const ImuErrorModel& i
   return {filter, ahead};
 }
 
-using Metric = std::function<double(const Eigen::Matrix2d&)>;
+/// Of a covariance along north, east and down, and a course over ground in rad.
+using Metric = std::function<double(const Eigen::Matrix3d&, double)>;
 
 inline Metric radius(double probability) {
-  return [=](const Eigen::Matrix2d& P) { return horizontal_radius_m(P, probability); };
+  return [=](const Eigen::Matrix3d& P, double) {
+    return horizontal_radius_m(P.topLeftCorner<2, 2>(), probability);
+  };
 }
 
-inline Metric metric(HorizontalMetric which) {
-  return [=](const Eigen::Matrix2d& P) { return horizontal_error_m(which, P); };
+inline Metric metric(ErrorMetric which) {
+  return [=](const Eigen::Matrix3d& P, double course_rad) {
+    return error_size_m(which, P, course_rad);
+  };
 }
 
 inline double present(const Ekf& filter, const Metric& size) {
-  return size(horizontal_covariance(filter.estimate().nav.r_e_m,
-                                    filter.covariance().block<3, 3>(kDr, kDr)));
+  const NavState& nav = filter.estimate().nav;
+  return size(ned_covariance(nav.r_e_m, filter.covariance().block<3, 3>(kDr, kDr)),
+              course_over_ground_rad(nav));
 }
 
 /// How large the error is while the filter coasts over the increments ahead, and when.

@@ -92,7 +92,7 @@ TEST_CASE("leeway against coasting the same filter: motions, sensors, limits, me
         const double limit_m = multiple * ahead.size_m[0];
         check(ahead, time_to_limit(run.filter, limit_m), limit_m);
       }
-      for (const HorizontalMetric which : kAll<HorizontalMetric>) {
+      for (const ErrorMetric which : kAll<ErrorMetric>) {
         const double limit_m = 5.0 * present(run.filter, metric(which));
         check(coast(run, metric(which)), time_to_limit(run.filter, limit_m, which), limit_m);
       }
@@ -244,7 +244,7 @@ TEST_CASE("leeway: outcomes where there is no answer") {
   for (const double limit_m : {0.0, -0.0, -5.0, -kInf, kNan}) {
     CAPTURE(limit_m);
     CHECK(is_zero(time_to_limit(run.filter, limit_m)));
-    for (const HorizontalMetric which : kAll<HorizontalMetric>) {
+    for (const ErrorMetric which : kAll<ErrorMetric>) {
       CHECK(is_zero(time_to_limit(run.filter, limit_m, which)));
     }
   }

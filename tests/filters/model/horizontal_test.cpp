@@ -133,21 +133,6 @@ TEST_CASE("radius does not depend on the direction and scales with the error") {
   }
 }
 
-TEST_CASE("metrics of a known covariance") {
-  Eigen::Matrix2d P;
-  P << 9.0, 2.0,  //
-      2.0, 16.0;
-  CHECK(near(horizontal_error_m(HorizontalMetric::kDrms, P), 5.0, 1e-15));
-  CHECK(near(horizontal_error_m(HorizontalMetric::kAxis, P), 4.0, 1e-15));
-  CHECK(horizontal_error_m(HorizontalMetric::kR95, P) == horizontal_radius_m(P, 0.95));
-  // Of a circle: sqrt(-ln 0.05) = 1.7308 DRMS.
-  CHECK(near(horizontal_error_m(HorizontalMetric::kR95, ellipse(1.0, 1.0)) / std::sqrt(2.0),
-             1.7308184, 1e-7));
-  for (const HorizontalMetric metric : kAll<HorizontalMetric>) {
-    CHECK(horizontal_error_m(metric, Eigen::Matrix2d::Zero()) == 0.0);
-  }
-}
-
 TEST_CASE("horizontal covariance is the north-east part of a covariance turned into place") {
   // Far from the axes; there the columns of a turn by longitude about z and by -latitude - 90 deg
   // about y are north, east and down.

@@ -10,6 +10,7 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/ekf/time_to_limit.hpp"
 #include "leeway/model/claimed_solution.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/model/initial_covariance.hpp"
 #include "leeway/navigator/heading_bank.hpp"
@@ -83,7 +84,7 @@ TEST_CASE("nothing the vehicle runs touches the heap") {
     for (const Ekf* ekf : {&straight, &turning}) {
       for (const double limit_m : {8.0, 50.0, 1e5, 1e100}) {
         sum_s += time_to_limit(*ekf, limit_m).time_s;
-        for (const HorizontalMetric metric : kAll<HorizontalMetric>) {
+        for (const ErrorMetric metric : kAll<ErrorMetric>) {
           sum_s += time_to_limit(*ekf, limit_m, metric).time_s;
         }
       }

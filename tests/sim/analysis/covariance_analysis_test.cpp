@@ -9,6 +9,8 @@
 #include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/model/error_metric.hpp"
+#include "leeway/model/horizontal.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
@@ -109,7 +111,7 @@ TEST_CASE("the error per axis tends to sqrt(2.5 * 0.05 T) for short intervals" *
           doctest::test_suite("heavy")) {
   for (const ImuClass imu : {ImuClass::kMarine, ImuClass::kTactical}) {
     Scene scene = defined_case(imu, square_loop());
-    scene.limit.metric = HorizontalMetric::kAxis;
+    scene.limit.metric = ErrorMetric::kAxis;
     scene.gnss.interval_s = 0.1;
     scene.duration_s = 7200.0;
     const double limit_m = std::sqrt(2.5 * 0.05 * 0.1);
@@ -117,6 +119,37 @@ TEST_CASE("the error per axis tends to sqrt(2.5 * 0.05 T) for short intervals" *
     const double true_m = analyze(scene, error_track(scene)).true_m;
     CHECK(true_m > 0.95 * limit_m);
     CHECK(true_m < 1.05 * limit_m);
+  }
+}
+
+TEST_CASE("along and across the track by hand, on a circle that turns through every course") {
+  Scene scene = defined_case(ImuClass::kTactical, circle({.radius_m = 300.0, .duration_s = 600.0}));
+  scene.duration_s = 600.0;
+  scene.gnss.interval_s = 25.0;
+  const ErrorTrack track = error_track(scene);
+  for (const ErrorMetric metric : {ErrorMetric::kAlong95, ErrorMetric::kCross95}) {
+    CAPTURE(name(metric));
+    scene.limit.metric = metric;
+    scene.limit.last_s = 300.0;
+    double largest_m = 0.0;
+    double least_north = 1.0;
+    CovarianceConfig config;
+    config.observer = [&](const CovariancePoint& p) {
+      if (p.moment != Moment::kBeforeFix || p.t_s <= 300.0) return;
+      const Eigen::Matrix3d C_ne = ned_to_ecef(geodetic_from_ecef(p.r_e_m)).transpose();
+      const Eigen::Vector3d v_n = C_ne * truth_at(scene.trajectory, p.t_s).nav.v_e_mps;
+      Eigen::Vector3d along_n(v_n.x(), v_n.y(), 0.0);
+      along_n.normalize();
+      least_north = std::min(least_north, along_n.x());
+      const Eigen::Vector3d axis_n = metric == ErrorMetric::kAlong95
+                                         ? along_n
+                                         : Eigen::Vector3d(-along_n.y(), along_n.x(), 0.0);
+      const Eigen::Matrix3d P = C_ne * p.truth.block<3, 3>(kDr, kDr) * C_ne.transpose();
+      largest_m = std::max(largest_m, 1.959963985 * std::sqrt(axis_n.dot(P * axis_n)));
+    };
+    const CovarianceAnalysis r = analyze(scene, track, config);
+    CHECK(std::abs(r.true_m / largest_m - 1.0) < 1e-9);
+    CHECK(least_north < -0.8);  // the course has turned
   }
 }
 

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "leeway/earth/error.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
@@ -84,6 +86,83 @@ TEST_CASE("observers see the answer, and the limit passed without fixes") {
   CHECK(true_m.size() > 3);
   CHECK(passed_s >= answer.free_inertial_s);
   CHECK(passed_s - answer.free_inertial_s < 1.01);  // a step
+}
+
+TEST_CASE("an answer does not depend on what else is asked") {
+  Scene scene = defined_case(ImuClass::kTactical);
+  scene.duration_s = 2400.0;
+  const std::vector<AllowedError> all{1.0, 10.0, {5.0, 0.05}, 30.0, {10.0, 0.01}};
+  const auto together = solve_intervals(scene, all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CAPTURE(text_of(all[i]));
+    const Interval alone = solve_intervals(scene, {all[i]}).front();
+    CHECK(alone.interval_s == together[i].interval_s);
+    CHECK(alone.true_m == together[i].true_m);
+    CHECK(alone.claimed_m == together[i].claimed_m);
+    CHECK(alone.free_inertial_s == together[i].free_inertial_s);
+  }
+}
+
+TEST_CASE("a limit that grows with the way: kept at the answer, broken beyond it") {
+  Scene scene = defined_case(ImuClass::kTactical);
+  scene.duration_s = 2400.0;
+  // 20 m/s: a tenth of a metre is allowed for each second.
+  const AllowedError allowed(5.0, 0.005);
+  const auto answers = solve_intervals(scene, {allowed, 5.0});
+  const Interval& growing = answers.front();
+  REQUIRE(growing.outcome == Interval::Outcome::kSolved);
+  CHECK(growing.share == 0.005);
+  CHECK(growing.interval_s > 1.05 * answers.back().interval_s);
+  // The way between fixes, but for that of a late start.
+  CHECK(std::abs(growing.allowed_m - (5.0 + 0.1 * growing.interval_s)) < 0.05);
+  CHECK(growing.true_m <= growing.allowed_m);
+  CHECK(growing.true_m > 0.99 * growing.allowed_m);
+  scene.limit.allow(allowed);
+  for (const double factor : {1.0, 1.02}) {
+    scene.gnss.interval_s = factor * growing.interval_s;
+    const CovarianceAnalysis analysis = analyze(scene, error_track(scene));
+    CHECK((analysis.true_m <= analysis.allowed_m) == (factor == 1.0));
+    CHECK(analysis.true_m == analysis.true_errors.worst(allowed).error_m);
+  }
+  // Without fixes the way is that from the start.
+  const ErrorTrack track = error_track(scene);
+  double before_s = 0.0;
+  bool is_passed = false;
+  free_inertial(scene, track, [&](const CovariancePoint& p) {
+    const double error_m = error_by_metric_m(
+        scene, track, p.t_s, ned_covariance(p.r_e_m, p.truth.block<3, 3>(kDr, kDr)));
+    is_passed = error_m >= allowed.after_m(20.0 * p.t_s);
+    if (!is_passed) before_s = p.t_s;
+    return !is_passed;
+  });
+  CHECK(is_passed);
+  CHECK(growing.free_inertial_s >= before_s);
+  CHECK(growing.free_inertial_s - before_s < 1.01);  // a step
+}
+
+TEST_CASE("every metric has its answer, with and without fixes; 3D asks for more than horizontal") {
+  Scene scene = defined_case(ImuClass::kTactical);
+  scene.duration_s = 1200.0;
+  std::map<ErrorMetric, Interval> answers;
+  for (const ErrorMetric metric : kAll<ErrorMetric>) {
+    CAPTURE(name(metric));
+    scene.limit.metric = metric;
+    const Interval& answer = answers[metric] = solve_intervals(scene, {20.0}).front();
+    CHECK(answer.outcome == Interval::Outcome::kSolved);
+    CHECK(answer.true_m <= 20.0);
+    CHECK(answer.free_inertial_s > 1.0);
+  }
+  const auto order = [&](ErrorMetric longer, ErrorMetric shorter) {
+    CHECK(answers[longer].interval_s > answers[shorter].interval_s);
+    CHECK(answers[longer].free_inertial_s > answers[shorter].free_inertial_s);
+  };
+  order(ErrorMetric::kR50, ErrorMetric::kR68);
+  order(ErrorMetric::kR68, ErrorMetric::kR95);
+  order(ErrorMetric::kR95, ErrorMetric::kR99);
+  order(ErrorMetric::kAxis, ErrorMetric::kDrms);
+  order(ErrorMetric::kDrms, ErrorMetric::k3d);
+  order(ErrorMetric::kCross95, ErrorMetric::kR95);
+  order(ErrorMetric::kAlong95, ErrorMetric::kR95);
 }
 
 TEST_CASE("limits out of reach are said to be") {

@@ -160,6 +160,39 @@ TEST_CASE("interval prints one table, the paper's conclusion and what the step c
   }
 }
 
+TEST_CASE("interval: limits that grow, presets with their source, metrics") {
+  const auto loop = [](const std::string& options) {
+    return leeway("interval" + scene("square-loop.toml") + "--imu tactical --at 900 --no-check " +
+                  options + " --json")
+        .json();
+  };
+  const auto growing = loop("--metric along95 --limit 5m+5%,30");
+  REQUIRE(growing.at("results").size() == 2);
+  const auto& first = growing.at("results").at(0);
+  CHECK(first.at("limit") == "5m+5%");
+  CHECK(first.at("limit_m") == 5.0);
+  CHECK(first.at("share") == 0.05);
+  CHECK(first.at("metric") == "along95");
+  CHECK(first.at("error_m") <= first.at("allowed_m"));
+  CHECK(growing.at("results").at(1).at("limit") == "30m");
+  CHECK(growing.at("results").at(1).at("share") == 0.0);
+  CHECK(growing.at("input").at("preset").is_null());
+  const auto preset = loop("--preset etcs-odometry");
+  REQUIRE(preset.at("results").size() == 1);
+  CHECK(preset.at("results").at(0).at("interval_s") == first.at("interval_s"));
+  CHECK(preset.at("results").at(0).at("metric") == "along95");
+  CHECK(preset.at("input").at("preset") == "etcs-odometry");
+  CHECK(contains(preset.at("input").at("limit_source").get<std::string>(), "SUBSET-041"));
+  const Outcome table = leeway("interval" + scene("square-loop.toml") +
+                               "--imu tactical --at 900 --no-check --preset imo-b");
+  CHECK(contains(table.out, "Limit imo-b: IMO MSC.1/Circ.1575"));
+  CHECK(contains(table.out, "horizontal error (r95)"));
+  const Outcome list = leeway("interval --preset list");
+  CHECK(list.exit_code == 0);
+  CHECK(contains(list.out, "rnp-0.3"));
+  CHECK(contains(list.out, "5m+5%"));
+}
+
 TEST_CASE("interval: wrong input is refused with what to do") {
   const auto refused = [](const std::string& arguments, const char* why) {
     const Outcome outcome = leeway("interval " + arguments);
@@ -172,6 +205,11 @@ TEST_CASE("interval: wrong input is refused with what to do") {
   refused("--scene nowhere.toml", "nowhere.toml");
   refused(scene("square-loop.toml") + "--imu marin", "marine");
   refused(scene("square-loop.toml") + "--limit -3", "--limit");
+  refused(scene("square-loop.toml") + "--limit 5ft", "'5ft' is no limit: write metres");
+  refused(scene("square-loop.toml") + "--limit 5m+5", "as in 5m+5%");
+  refused(scene("square-loop.toml") + "--preset rnp-7", "rnp-10");
+  refused(scene("square-loop.toml") + "--preset rnp-1 --limit 5", "excludes");
+  refused(scene("square-loop.toml") + "--limit 10 --confirm 2 --confirm-limit 3", "which are 10m");
   refused(scene("square-loop.toml") + "--range middle", "--range");
 }
 

@@ -67,7 +67,7 @@ Scene drive_scene() {
   scene.filter.lever_arm_b_m = scene.gnss.errors.lever_arm_b_m;
   scene.filter.gnss_correlation_s = scene.gnss.errors.correlation_time_s;
   scene.initial = InitialSigma{0.01, 0.02, 0.1, 1.5};
-  scene.limit = {HorizontalMetric::kDrms, 30.0, 60.0};
+  scene.limit = {.limit_m = 30.0, .last_s = 60.0};
   scene.trials = 40;
   return scene;
 }

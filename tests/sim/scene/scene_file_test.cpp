@@ -107,7 +107,7 @@ TEST_CASE("a scene of the least keys has the defaults of the guide") {
   CHECK(scene.gnss.outlier_probability == 0.0);
   CHECK(scene.filter.gnss_correlation_s == 0.0);
   CHECK(scene.filter.gate_probability == 1e-6);
-  CHECK(scene.limit.metric == HorizontalMetric::kDrms);
+  CHECK(scene.limit.metric == ErrorMetric::kDrms);
   CHECK(scene.limit.limit_m == 10.0);
 }
 
@@ -194,7 +194,7 @@ limit_m = 25
   CHECK(near(scene.initial->heading_rad, 3.0 * kRadPerDeg, 1e-17));
   CHECK(scene.initial->velocity_mps == 0.5);
   CHECK(scene.initial->position_m == 4.0);
-  CHECK(scene.limit.metric == HorizontalMetric::kR95);
+  CHECK(scene.limit.metric == ErrorMetric::kR95);
   CHECK(scene.limit.limit_m == 25.0);
 }
 
@@ -297,6 +297,25 @@ TEST_CASE("a scene can be ended at another time") {
   CHECK(contains(message, "the route ends at"));
 }
 
+TEST_CASE("a limit as text, that grows with the way, or of a preset") {
+  const auto limit_of = [](const std::string& section) {
+    return parse_scene(kStill + kImu + "[limit]\n" + section, "s.toml").limit;
+  };
+  const ErrorLimit growing = limit_of("metric = \"along95\"\nlimit = \"5m+5%\"\nlast_s = 60\n");
+  CHECK(growing.metric == ErrorMetric::kAlong95);
+  CHECK(growing.allowed() == AllowedError(5.0, 0.05));
+  CHECK(growing.last_s == 60.0);
+  CHECK(growing.preset.empty());
+  CHECK(limit_of("limit = \"7\"\n").allowed() == AllowedError(7.0));
+  const ErrorLimit preset = limit_of("preset = \"imo-b\"\nlast_s = 60\n");
+  CHECK(preset.metric == ErrorMetric::kR95);
+  CHECK(preset.allowed() == AllowedError(10.0));
+  CHECK(preset.preset == "imo-b");
+  for (const ErrorMetric metric : kAll<ErrorMetric>) {
+    CHECK(limit_of("metric = \"" + std::string(name(metric)) + "\"\n").metric == metric);
+  }
+}
+
 TEST_CASE("mistakes in a scene are refused with line, column and what was meant") {
   const std::string all = kStill + kImu;
   const struct {
@@ -331,6 +350,12 @@ TEST_CASE("mistakes in a scene are refused with line, column and what was meant"
       {all + "[initial]\ntilt_deg = 1\n", ":5:1", "needs heading_deg"},
       {all + "[limit]\nmetric = \"cep\"\n", ":6:10", "drms"},
       {all + "[limit]\nlimit_m = -3\n", ":6:11", "is -3"},
+      {all + "[limit]\nlimit = \"5 ft\"\n", ":6:9", "metres, as in 5 or 5m"},
+      {all + "[limit]\nlimit = 5\n", ":6:9", "must be text in quotes"},
+      {all + "[limit]\nlimit = \"5m\"\nlimit_m = 5\n", ":7:1", "give one"},
+      {all + "[limit]\npreset = \"rnp-3\"\n", ":6:10", "rnp-0.3"},
+      {all + "[limit]\npreset = \"rnp-1\"\nlimit_m = 5\n", ":6:10", "give it alone"},
+      {all + "[limit]\npreset = \"rnp-1\"\nmetric = \"r95\"\n", ":6:10", "give it alone"},
       {"[scene]\ntrials = 0\n" + all, ":2:10", "from 1 to"},
       {"[scene]\nimu_rate_hz = 1e9\n" + all, ":2:15", "10000"},
       // Contradictions.

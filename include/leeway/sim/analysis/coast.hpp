@@ -17,16 +17,19 @@ struct Coast {
   double end_s{};        ///< when the first fix after it arrives, or the scene's end
   double end_error_m{};  ///< then, by the scene's metric, before that fix is used
   double limit_m{};
+  double share{};          ///< of the way since the last fix, allowed on top
+  double end_allowed_m{};  ///< at end_s
   /// From the start of the outage until the error reaches the limit, had it no end. NaN when it
   /// does not within the scene.
   double coast_s{std::numeric_limits<double>::quiet_NaN()};
 
-  bool keeps_limit() const { return end_error_m <= limit_m; }
+  bool keeps_limit() const { return end_error_m <= end_allowed_m; }
 };
 
-/// One for each outage of the scene, for its own limit and fix interval.
+/// One for each outage of the scene, for its own metric and fix interval.
 /// @param track  error_track() of this scene
 /// @throws Error when the scene is invalid.
-std::vector<Coast> coasts(const Scene& scene, const ErrorTrack& track, double limit_m);
+std::vector<Coast> coasts(const Scene& scene, const ErrorTrack& track,
+                          const AllowedError& allowed);
 
 }  // namespace leeway::sim

@@ -12,6 +12,7 @@
 #include "leeway/earth/names.hpp"
 #include "leeway/model/error_state.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
+#include "leeway/sim/analysis/worst_errors.hpp"
 #include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::sim {
@@ -88,14 +89,20 @@ struct CovarianceConfig {
   std::function<void(const CovariancePoint&)> observer{};
 };
 
-/// Result of an analysis: the largest horizontal error just before a fix, outages included, over the
-/// last part of the scene, scored_part_s(scene).
+/// Result of an analysis: the worst error just before a fix, outages included, over the last part
+/// of the scene, scored_part_s(scene). The worst is the largest by the scene's metric, and where
+/// the limit grows with the way the largest over what is allowed.
 struct CovarianceAnalysis {
-  double claimed_m{};  ///< by the scene's metric
+  double claimed_m{};  ///< by the scene's metric; where the claim is the worst
   double true_m{};
+  double allowed_m{};  ///< what the scene allows where the true error is the worst
+  WorstErrors claimed_errors{};  ///< by the scene's metric, for other limits; those that grow are
+                                 ///< answered where the scene's does
+  WorstErrors true_errors{};
   double claimed_drms_m{};  ///< root mean square over the last part's fixes, not the largest: what
   double true_drms_m{};     ///< a Monte Carlo of the scene averages
-  double worst_s{};         ///< when the true one is largest
+  Eigen::Vector3d true_rms_n_m{Eigen::Vector3d::Zero()};  ///< likewise, along north, east, down
+  double worst_s{};         ///< when the true one is the worst
   CovariancePoint worst{};  ///< there
   ErrorBudget error_budget{};  ///< there; empty unless by_source
   double window_s{};           ///< the last part, s

@@ -13,6 +13,7 @@
 
 #include "leeway/covariance/transition.hpp"
 #include "leeway/model/process_noise.hpp"
+#include "leeway/sim/motion/ground_path.hpp"
 #include "leeway/sim/motion/trajectory.hpp"
 
 namespace leeway::sim {
@@ -77,6 +78,9 @@ class ErrorTrack {
   /// The run that a leg belongs to: legs of the same run are the same.
   std::size_t run_of(std::size_t step) const { return run_of_[step]; }
 
+  /// The way along the trajectory.
+  const GroundPath& path() const { return path_; }
+
   /// Walk from one time to the other: f is called with each leg.
   /// @pre 0 <= from_s, to_s <= duration.
   template <class F>
@@ -116,6 +120,7 @@ class ErrorTrack {
   ErrorTrackConfig config_;
   double step_s_;  // config_.step_s or a little less: whole steps in the span
   double piece_s_;
+  GroundPath path_;
   std::vector<Piece> pieces_{};
   std::vector<Run> runs_{};
   std::vector<ParameterMatrix> B_{};  // of the runs

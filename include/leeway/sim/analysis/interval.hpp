@@ -25,7 +25,7 @@ struct IntervalConfig {
   std::function<void(double t_s, double error_m)> free_inertial_observer{};
 };
 
-/// The answer for one limit.
+/// The answer for one limit, by the scene's metric.
 struct Interval {
   enum class Outcome {
     kSolved,
@@ -33,26 +33,32 @@ struct Interval {
     kAlways,  ///< even at half the scene the error stays below; interval_s is half the scene
   };
   double limit_m{};
+  double share{};  ///< of the way since the last fix, allowed on top
   Outcome outcome{Outcome::kSolved};
   double interval_s{std::numeric_limits<double>::quiet_NaN()};
-  double true_m{};     ///< the error reached at this interval, by the scene's metric
-  double claimed_m{};  ///< what the filter takes it for
+  double true_m{};     ///< the worst error reached at this interval
+  double allowed_m{};  ///< before that fix
+  double claimed_m{};  ///< the worst that the filter claims
   bool settled{};      ///< whether the filter has settled by the scene's end
   /// Without fixes from a perfect start, no calibration: the time to the limit. NaN when it is not
   /// reached within the scene.
   double free_inertial_s{std::numeric_limits<double>::quiet_NaN()};
   /// Relative change of true_m when the covariance step is halved: what the step costs.
   double step_effect{};
+
+  AllowedError allowed() const { return {limit_m, share}; }
 };
 
 constexpr auto names(Interval::Outcome) { return std::array{"solved", "never", "always"}; }
 
-/// The correction interval for each limit, by bracketing and secants in log(error) over
-/// log(interval) on the truth-model covariance analysis; the scene's own gnss.interval_s is not
-/// used.
+/// The correction interval for each limit, by bracketing and secants in log(error / allowed) over
+/// log(interval) on the truth-model covariance analysis; the scene's own gnss.interval_s and limit
+/// are not used, its metric is. An answer does not depend on what other limits are asked for.
+/// Where a limit grows with the way, short intervals may break it and longer ones keep it: the
+/// answer is then the end of a range of intervals that keep it.
 /// @param progress  called with the fraction done
 /// @throws Error when the scene, the configuration or a limit is invalid.
-std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<double>& limits_m,
+std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<AllowedError>& limits,
                                       const IntervalConfig& config = {},
                                       const std::function<void(double fraction)>& progress = {});
 

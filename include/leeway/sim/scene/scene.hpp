@@ -4,8 +4,8 @@
 #pragma once
 
 #include "leeway/ekf/ekf.hpp"
-#include "leeway/model/horizontal.hpp"
 #include "leeway/model/initial_covariance.hpp"
+#include "leeway/sim/scene/error_limit.hpp"
 #include "leeway/sim/scene/outage.hpp"
 #include "leeway/sim/scene/scene_vehicle.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"
@@ -30,20 +30,6 @@ struct GnssScenario {
                    Field{"latency_s", c.latency_s, between(0.0, 60.0)}, Field{"outages", c.outages},
                    Field{"outlier_probability", c.outlier_probability, between(0.0, 0.5)},
                    Field{"outlier_sigma_m", c.outlier_sigma_m, between(0.0, 1e6)});
-  }
-};
-
-/// The largest horizontal error allowed just before a fix is used.
-struct ErrorLimit {
-  HorizontalMetric metric{HorizontalMetric::kDrms};
-  double limit_m{10.0};
-  /// Fixes this close to the end of the scene count, as scored_part_s(); where the scene has a time
-  /// to settle all after it do.
-  double last_s{480.0};
-
-  static auto visit(auto& c, const auto& visitor) {
-    return visitor(Field{"metric", c.metric}, Field{"limit_m", c.limit_m, positive_to(1e6)},
-                   Field{"last_s", c.last_s, positive_to(1e6)});
   }
 };
 

@@ -71,6 +71,7 @@ struct TrialEpoch {
   double t_s{};
   double error_h_m{};      ///< infinite, as the claim, where there is no solution yet
   double claimed_r95_m{};  ///< the radius that 95 % of such errors stay within, says the filter
+  Eigen::Vector3d error_n_m{Eigen::Vector3d::Zero()};  ///< north, east, down; infinite likewise
 };
 
 /// The score of one trial. The filter is told scene.filter and starts from its known biases, zero

@@ -2,7 +2,7 @@
 import type { Chart, Level, Series } from "../chart";
 import type { Report, Table } from "../report";
 import type { Grid, View } from "../view";
-import { count, duration, list, short, withUnit } from "../words";
+import { count, duration, list, percent, short, withUnit } from "../words";
 import { metricOf, sceneInWords, sceneOf, type SceneInput } from "./scene";
 
 interface Confirm {
@@ -20,7 +20,11 @@ interface Confirm {
 interface Row {
   readonly imu: string;
   readonly range: string | null;
+  /** As it is asked for: "5m", "5m+5%". */
+  readonly limit: string;
   readonly limit_m: number;
+  /** Of the way since the last fix, allowed on top. */
+  readonly share: number;
   readonly interval_s: number | null;
   /** What the answer rests on; answer_s is the trials' where they contradict. */
   readonly mark: "linear" | "checked" | "by trials";
@@ -43,7 +47,7 @@ interface Coast {
   readonly duration_s: number;
   readonly end_s: number;
   readonly end_error_m: number;
-  readonly limit_m: number;
+  readonly end_allowed_m: number;
   readonly keeps_limit: boolean;
   readonly coast_s: number | null;
 }
@@ -52,7 +56,9 @@ interface Aided {
   readonly aiding: string;
   readonly is_the_scenes: boolean;
   readonly imu: string;
+  readonly limit: string;
   readonly limit_m: number;
+  readonly share: number;
   readonly interval_s: number | null;
 }
 
@@ -61,7 +67,7 @@ export function intervalView(report: Report): View {
   if (report.outages !== undefined) return outagesView(report, report.outages as readonly Coast[]);
   const scene = sceneOf(report);
   const imus = [...new Set(rows.map(nameOf))];
-  const limits = [...new Set(rows.map((row) => row.limit_m))];
+  const limits = rows.filter((row, i) => rows.findIndex((r) => r.limit === row.limit) === i);
   return {
     title: "How long can an IMU go between GNSS fixes?",
     scene: sceneInWords(scene, false),
@@ -101,7 +107,7 @@ function outagesView(report: Report, coasts: readonly Coast[]): View {
         headings: ["IMU", "outage at, s", "for, s", "error at its end, m", "limit, m", "keeps it",
           "coast time, s"],
         rows: coasts.map((c) => [
-          nameOf(c), short(c.start_s), short(c.duration_s), short(c.end_error_m), short(c.limit_m),
+          nameOf(c), short(c.start_s), short(c.duration_s), short(c.end_error_m), short(c.end_allowed_m),
           c.keeps_limit ? "yes" : `no, at ${withUnit(c.end_s, "s")}`,
           c.coast_s === null ? "to the scene's end" : short(c.coast_s),
         ]),
@@ -122,7 +128,7 @@ function aidedGrid(aided: readonly Aided[]): Grid[] {
     {
       caption:
         `What the vehicle tells beside its receiver: the interval of ${first.imu} at ` +
-        `${withUnit(first.limit_m, "m")}, linear`,
+        `${spokenLimit(first)}, linear`,
       headings: ["aiding", "interval, s", ""],
       rows: aided.map((a) => [a.aiding, short(a.interval_s), a.is_the_scenes ? "the scene's" : ""]),
     },
@@ -130,6 +136,12 @@ function aidedGrid(aided: readonly Aided[]): Grid[] {
 }
 
 const nameOf = (row: { readonly imu: string; readonly range: string | null }): string => (row.range ? `${row.imu}/${row.range}` : row.imu);
+
+type Limit = Pick<Row, "limit" | "limit_m" | "share">;
+
+const spokenLimit = ({ limit_m, share }: Limit): string =>
+  withUnit(limit_m, "m") + (share > 0 ? ` + ${percent(share)} of the way` : "");
+
 /** A class without its "mid", which is what it is when nothing else is said. */
 const spoken = (imu: string): string => imu.replace(/\/mid$/, "");
 
@@ -139,8 +151,8 @@ const reliable = (row: Row): number | null => row.answer_s;
 const signOf = ({ mark }: Row): string =>
   mark === "linear" ? "" : mark === "checked" ? " ✓" : " ✗";
 
-function answerFor(rows: readonly Row[], limit: number): string {
-  const asked = rows.filter((row) => row.limit_m === limit);
+function answerFor(rows: readonly Row[], limit: Limit): string {
+  const asked = rows.filter((row) => row.limit === limit.limit);
   const name = (row: Row): string => spoken(nameOf(row));
   const parts: string[] = [];
   const solved = asked.filter((row) => reliable(row) !== null);
@@ -150,7 +162,7 @@ function answerFor(rows: readonly Row[], limit: number): string {
   else if (never.length > 0) parts.push(`${list(never)} cannot, however often there is a fix`);
   const unsure = asked.filter((row) => row.outcome !== "never" && reliable(row) === null).map(name);
   if (unsure.length > 0) parts.push(`for ${list(unsure)} the trials found no interval`);
-  return `To stay within ${withUnit(limit, "m")}: ${parts.join("; ")}.`;
+  return `To stay within ${spokenLimit(limit)}: ${parts.join("; ")}.`;
 }
 
 /** @pre it has an interval */
@@ -160,9 +172,9 @@ function needOf(row: Row): string {
   return `${more}${duration(reliable(row) as number)} by ${spoken(nameOf(row))}${sure}`;
 }
 
-function answersGrid(rows: readonly Row[], imus: readonly string[], limits: readonly number[]): Grid {
-  const cell = (imu: string, limit: number): string => {
-    const row = rows.find((r) => nameOf(r) === imu && r.limit_m === limit);
+function answersGrid(rows: readonly Row[], imus: readonly string[], limits: readonly Limit[]): Grid {
+  const cell = (imu: string, limit: Limit): string => {
+    const row = rows.find((r) => nameOf(r) === imu && r.limit === limit.limit);
     if (!row) return "-";
     return `${short(row.answer_s)}${signOf(row)} (${short(row.free_inertial_s)})`;
   };
@@ -172,7 +184,7 @@ function answersGrid(rows: readonly Row[], imus: readonly string[], limits: read
       "Longest time between fixes, s; in brackets the time that it lasts without any, from a " +
       "perfect start, s" +
       (anyTrials ? ". ✓ checked by trials, ✗ by trials, which contradict the analysis." : "."),
-    headings: ["IMU", ...limits.map((limit) => withUnit(limit, "m"))],
+    headings: ["IMU", ...limits.map(spokenLimit)],
     rows: imus.map((imu) => [imu, ...limits.map((limit) => cell(imu, limit))]),
   };
 }
@@ -183,12 +195,12 @@ function confirmGrid(rows: readonly Row[]): Grid[] {
   return [
     {
       caption: "Monte Carlo trials of the scene's estimator at the intervals of the analysis",
-      headings: ["IMU", "limit, m", "interval, s", "trials", "RMS / claimed", "error / linear", "NEES",
+      headings: ["IMU", "limit", "interval, s", "trials", "RMS / claimed", "error / linear", "NEES",
         "95 % band", "verdict"],
       rows: confirmed.map((row) => {
         const c = row.confirm as Confirm;
         return [
-          nameOf(row), short(row.limit_m), short(row.interval_s), String(c.trials),
+          nameOf(row), spokenLimit(row), short(row.interval_s), String(c.trials),
           ratio(c.rms_over_sigma), ratio(c.error_over_true), ratio(c.nees),
           `${c.nees_low.toFixed(2)} to ${c.nees_high.toFixed(2)}`,
           c.agrees ? "✓" : `✗ ${foundBy(c)}`,
@@ -209,6 +221,7 @@ function trust(rows: readonly Row[], scene: SceneInput): string[] {
   return [
     `“Within” means ${metricOf(scene)} just before any fix that counts: all after the time to settle, ` +
       "or those at the scene's end.",
+    ...(scene.limit_source ? [`The limit is that of ${scene.limit_source}.`] : []),
     "The intervals are those of a covariance analysis: the filter's own equations, linearized " +
       "along the true motion, against sensors that also have the errors the filter does not model.",
     ...confirmationInWords(rows),
@@ -227,7 +240,7 @@ function confirmationInWords(rows: readonly Row[]): string[] {
   const trials = tried.map((row) => (row.confirm as Confirm).trials);
   const [fewest, most] = [Math.min(...trials), Math.max(...trials)];
   const failed = tried.filter((row) => row.mark === "by trials");
-  const name = (row: Row): string => `${spoken(nameOf(row))} at ${withUnit(row.limit_m, "m")}`;
+  const name = (row: Row): string => `${spoken(nameOf(row))} at ${spokenLimit(row)}`;
   const words = [
     `${tried.length - failed.length} of ${count(tried.length, "answer")} checked (✓) by ` +
       `${fewest === most ? fewest : `${fewest} to ${most}`} Monte Carlo trials of the scene's ` +
@@ -267,11 +280,13 @@ function curves(report: Report, imus: readonly string[], kind: string): [string,
   });
 }
 
-const levels = (limits: readonly number[]): Level[] =>
-  limits.map((limit) => ({ at: limit, label: `limit ${withUnit(limit, "m")}` }));
+/** Of limits that stay where they are. */
+const levels = (limits: readonly Limit[]): Level[] =>
+  limits.filter(({ share }) => share === 0)
+    .map((limit) => ({ at: limit.limit_m, label: `limit ${spokenLimit(limit)}` }));
 
 function errorChart(
-  report: Report, rows: readonly Row[], imus: readonly string[], limits: readonly number[],
+  report: Report, rows: readonly Row[], imus: readonly string[], limits: readonly Limit[],
   scene: SceneInput,
 ): Chart {
   const lines = curves(report, imus, "curve").map(
@@ -287,22 +302,22 @@ function errorChart(
       label: "Monte Carlo", style: "points", colour: 6,
       x: trialled.map((row) => row.interval_s as number),
       y: trialled.map((row) => row.error_m * (row.confirm as Confirm).error_over_true),
-      names: trialled.map((row) => `${nameOf(row)}, ${withUnit(row.limit_m, "m")}`),
+      names: trialled.map((row) => `${nameOf(row)}, ${spokenLimit(row)}`),
     });
   }
   return {
     id: "error-over-interval",
     title: "Error against the time between fixes",
     caption:
-      `True horizontal error (${scene.metric}) just before a fix. Where a curve crosses a limit ` +
+      `True error (${scene.metric}) just before a fix. Where a curve crosses a limit ` +
       "is the longest interval. Markers are what was computed; trials that diverged are left out.",
     x: { label: "time between fixes", unit: "s", log: true },
-    y: { label: "horizontal error before a fix", unit: "m", log: true },
+    y: { label: "error before a fix", unit: "m", log: true },
     series: lines, levels: levels(limits), hover: "point",
   };
 }
 
-function timesChart(rows: readonly Row[], imus: readonly string[], limits: readonly number[]): Chart {
+function timesChart(rows: readonly Row[], imus: readonly string[], limits: readonly Limit[]): Chart {
   const solved = (imu: string, pick: (row: Row) => number | null): [number[], number[]] => {
     const own = rows.filter((row) => nameOf(row) === imu && pick(row) !== null);
     return [own.map((row) => row.limit_m), own.map((row) => pick(row) as number)];
@@ -322,21 +337,21 @@ function timesChart(rows: readonly Row[], imus: readonly string[], limits: reado
       "Solid: the longest time between fixes that calibrate the sensors. Dashed: the time to the " +
       "limit from a perfect start without any fix. " +
       `${count(limits.length, "limit")}.`,
-    x: { label: "limit of the horizontal error", unit: "m", log: true },
+    x: { label: "limit", unit: "m", log: true },
     y: { label: "time", unit: "s", log: true },
     series, hover: "point",
   };
 }
 
 function growthChart(
-  report: Report, imus: readonly string[], limits: readonly number[], scene: SceneInput,
+  report: Report, imus: readonly string[], limits: readonly Limit[], scene: SceneInput,
 ): Chart {
   return {
     id: "free-inertial",
     title: "Growth of the error without any fix",
-    caption: `Horizontal error (${scene.metric}) from a perfect start with uncalibrated sensors.`,
+    caption: `Error (${scene.metric}) from a perfect start with uncalibrated sensors.`,
     x: { label: "time", unit: "s", log: true },
-    y: { label: "horizontal error", unit: "m", log: true },
+    y: { label: "error", unit: "m", log: true },
     series: curves(report, imus, "free_inertial").map(
       ([imu, colour, table]): Series => ({
         label: imu, style: "line", colour, x: table.column("t_s"), y: table.column("true_m"),

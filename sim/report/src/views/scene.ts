@@ -22,13 +22,22 @@ export interface SceneInput {
   };
   readonly metric: keyof typeof kMetrics;
   readonly limit_m?: number;
+  /** Of a preset: the document. */
+  readonly limit_source?: string | null;
   readonly trials: number;
 }
 
 const kMetrics = {
   drms: "the root mean square of the horizontal error (DRMS)",
   r95: "the radius that 95 % of the horizontal errors stay within (R95)",
-  axis: "one sigma of the worse of north and east",
+  axis: "one sigma along the longest axis of the horizontal error",
+  r50: "the radius that half of the horizontal errors stay within (CEP)",
+  r68: "the radius that 68 % of the horizontal errors stay within (R68)",
+  r99: "the radius that 99 % of the horizontal errors stay within (R99)",
+  cross95: "what 95 % of the errors across the track stay within",
+  along95: "what 95 % of the errors along the track stay within",
+  vertical95: "what 95 % of the errors of the height stay within",
+  "3d": "the root mean square of the error in space",
 };
 
 export const sceneOf = (report: Report): SceneInput => report.input as unknown as SceneInput;
