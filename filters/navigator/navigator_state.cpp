@@ -39,6 +39,11 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
 
 }  // namespace
 
+ErrorMatrix NavigatorState::covariance() const {
+  const ErrorMatrix P = bank_->covariance();
+  return bank_->collapsed() ? ErrorMatrix(P + clock_.covariance()) : P;
+}
+
 HeadingBank NavigatorState::any_bank() const {
   return HeadingBank(filter_anywhere(filter_of(config_)));
 }
@@ -48,6 +53,7 @@ NavigatorState::NavigatorState(const NavigatorConfig& config)
       aligner_(aligner_of(config)),
       aiding_(config.vehicle, config.filter.imu),
       course_(config.alignment.sideslip_rad, limits_of(config.vehicle.kind).drift_rad),
+      clock_(config.filter.gnss_correlation_s),
       C_bs_(config.C_bs),
       gate_recovery_(limits_of(config.vehicle.kind)) {
   validate(config);
@@ -95,8 +101,9 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
   if (is_starting_beside_) aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
   coast_.push(in_body);
+  clock_.push(in_body, bank_->best());
   const bool rested = aiding_.at_rest();
-  if (aiding_.push(in_body, *bank_)) {
+  if (aiding_.push(in_body, *bank_, clock_)) {
     contradicted_ = inc.time;
     doubt_heading(bank_->best(), bank_->best());
   }
@@ -119,6 +126,7 @@ void NavigatorState::bridge(Time to) {
     return;
   }
   coast_.restart();
+  clock_.restart();
   const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
   bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, hole_s_); });
   hole_s_ += dt_s;
@@ -143,11 +151,17 @@ template <AidingReading R>
 Verdict NavigatorState::take(const R& reading) {
   if (!(config_.vehicle.*R::kIsOn)) return Verdict::kUnused;
   if (!bank_ || !C_bs_) return Verdict::kAligning;
-  const UpdateOutcome update = bank_->update([&](Ekf& filter) {
-    return filter.update(measurement(reading, filter.estimate(), filter.vehicle()->value,
-                                     filter.inertial().omega_ib_b_radps()));
-  });
-  return update.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
+  const auto measured = [&](const Ekf& filter) {
+    return measurement(reading, filter.estimate(), filter.vehicle()->value,
+                       filter.inertial().omega_ib_b_radps());
+  };
+  clock_.reach(bank_->best());
+  const Measurement of_best = measured(bank_->best());
+  const UpdateOutcome update =
+      bank_->update([&](Ekf& filter) { return filter.update(measured(filter)); });
+  if (update.outcome != UpdateOutcome::Outcome::kFused) return Verdict::kGated;
+  clock_.take(of_best, bank_->best());
+  return Verdict::kFused;
 }
 
 // At constant velocity as at rest the specific force is along gravity: neither heading nor the
@@ -214,6 +228,7 @@ void NavigatorState::realign() {
   contradicted_ = bank_->best().estimate().nav.time;
   bank_.reset();
   coast_ = CoastMonitor{};
+  clock_.restart();
   aligner_ = aligner_of(config_);
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
@@ -226,6 +241,7 @@ void NavigatorState::find_mount() {
   bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
   coast_.restart();
+  clock_.restart();
   begin_vehicle();
 }
 

@@ -1,0 +1,272 @@
+#include "leeway/monitors/clock_monitor.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "filters/covariance/cholesky.hpp"
+#include "leeway/earth/earth.hpp"
+#include "leeway/earth/rotation.hpp"
+
+namespace leeway {
+namespace {
+
+// Variance per second by which the ages walk. A crystal drifts by 20 ppm: 2 ms in 100 s.
+constexpr double kCrystalS2PerS = 4e-8;
+// A clock that may be set anew, as by a leap second or a logger that starts again: 0.1 s in 10 s.
+constexpr double kSetAnewS2PerS = 1e-3;
+constexpr double kMostUnknownS2 = 1.0;
+constexpr double kLeastClockOffsetS = 0.02;  // receivers smooth by as much
+constexpr double kBeyondChanceSigmas = 5.0;
+constexpr double kOfVelocityOdds = 9.0;  // squared sigmas by which the velocity alone explains more
+constexpr double kNisWindow = 60.0;      // components of fixes
+constexpr double kLeastFollowedS = 0.001;
+constexpr double kLargestTakenOutS = 5.0;
+constexpr double kShortStepS = 0.03;  // tells no acceleration
+
+}  // namespace
+
+/// A measurement in rows of unit variance, zero beyond those there are, with the gain that it was
+/// fused with. Of a filter's covariance P after it, K = P H^T and S^-1 = 1 - H P H^T.
+struct ClockMonitor::Rows {
+  Rows(const Measurement& m, const Eigen::Matrix<double, 6, 2>& by_age, double position_weight,
+       const Ekf& filter);
+
+  void leave_held(Held held, const Estimate& estimate);
+
+  int count;
+  Eigen::Matrix<double, 6, kJointStates> H{Eigen::Matrix<double, 6, kJointStates>::Zero()};
+  Eigen::Matrix<double, 6, 2> G;  // by the ages
+  Eigen::Matrix<double, 6, 1> z{Eigen::Matrix<double, 6, 1>::Zero()};
+  Eigen::Matrix<double, kJointStates, 6> K{Eigen::Matrix<double, kJointStates, 6>::Zero()};
+  Eigen::Matrix<double, 6, 6> S_inverse{Eigen::Matrix<double, 6, 6>::Identity()};
+};
+
+ClockMonitor::Rows::Rows(const Measurement& m, const Eigen::Matrix<double, 6, 2>& by_age,
+                         double position_weight, const Ekf& filter)
+    : count(m.rows()), G(by_age) {
+  H.topLeftCorner(count, kErrorStates) = m.H;
+  H.topRightCorner(count, kVehicleStates) = m.H_vehicle;
+  z.head(count) = m.innovation;
+  const Cholesky<6> R_factor(m.R);
+  R_factor.whiten(H);
+  R_factor.whiten(G);
+  R_factor.whiten(z);
+  if (position_weight != 1.0) {
+    H.topRows<3>() *= position_weight;
+    G.topRows<3>() *= position_weight;
+    z.head<3>() *= position_weight;
+  }
+  const auto H_x = H.leftCols<kErrorStates>();
+  const auto H_y = H.rightCols<kVehicleStates>();
+  K.topRows<kErrorStates>() = filter.kernel().matrix() * H_x.transpose();
+  if (const auto& vehicle = filter.vehicle()) {
+    K.topRows<kErrorStates>() += vehicle->cross * H_y.transpose();
+    K.bottomRows<kVehicleStates>() =
+        vehicle->cross.transpose() * H_x.transpose() + vehicle->P * H_y.transpose();
+  }
+  S_inverse -= H * K;
+}
+
+/// Takes the directions out of the gain that the update has left alone.
+void ClockMonitor::Rows::leave_held(Held held, const Estimate& estimate) {
+  if (held == Held::kNothing) return;
+  const Eigen::Vector3d down_e = down_e_at(estimate.nav.r_e_m);
+  const auto leave = [this](int first, const Eigen::Vector3d& direction) {
+    K.middleRows<3>(first) -= direction * (direction.transpose() * K.middleRows<3>(first)).eval();
+  };
+  leave(kPsi, down_e);
+  if (held == Held::kHeadingAndTurn) leave(kBg, estimate.nav.q_eb.conjugate() * down_e);
+}
+
+// The part of a walking age that is new has not moved the filter.
+void ClockMonitor::Track::walk(double variance_s2) {
+  const Eigen::Matrix2d before = M_s2;
+  M_s2.diagonal().array() += variance_s2;
+  for (int k = 0; k < 2; ++k) {
+    const double excess = M_s2(k, k) / kMostUnknownS2;
+    if (excess > 1.0) {
+      M_s2.row(k) /= std::sqrt(excess);
+      M_s2.col(k) /= std::sqrt(excess);
+    }
+  }
+  U = (U * before * M_s2.inverse()).eval();
+}
+
+/// Friedland (1969) (31)-(38), for a filter that has fused the rows with their gain.
+/// @param nis_scale  of what is left; 0: the innovation is not looked at
+/// @returns nis of the rows
+double ClockMonitor::Track::pass(const Rows& rows, double nis_scale) {
+  const Eigen::Matrix<double, 6, 2> V = rows.H * U + rows.G;
+  const Eigen::Matrix<double, 6, 1> expected = rows.H * error + rows.G * age_s;
+  U -= rows.K * V;
+  error -= rows.K * expected;
+  if (nis_scale == 0.0) return 0.0;
+  const Eigen::Matrix<double, 6, 1> left = rows.z - expected;
+  const Eigen::Matrix<double, 2, 6> by_S = V.transpose() * rows.S_inverse / nis_scale;
+  const Eigen::Matrix2d information = by_S * V;
+  const bool is_sound = information(0, 0) >= 0.0 && information(1, 1) >= 0.0 &&
+                        information.determinant() >= 0.0;
+  if (is_sound) {
+    M_s2 = (M_s2.inverse() + information).inverse().eval();
+    M_s2 = (0.5 * (M_s2 + M_s2.transpose())).eval();
+    const FixAge change_s = M_s2 * (by_S * left);
+    age_s += change_s;
+    error += U * change_s;
+  }
+  return left.dot(rows.S_inverse * left);
+}
+
+void ClockMonitor::reach(const Ekf& filter) {
+  const double dt_s = since_step_s_;
+  since_step_s_ = 0.0;
+  if (dt_s == 0.0) return;
+  const Estimate& estimate = filter.estimate();
+  const Eigen::Vector3d dv_e_mps = estimate.nav.v_e_mps - v_e_mps_;
+  v_e_mps_ = estimate.nav.v_e_mps;
+  if (dt_s > kShortStepS) a_e_mps2_ = dv_e_mps / dt_s;
+  if (!has_begun_) return;
+  const Eigen::Matrix3d push = skew(
+      dv_e_mps + dt_s * kStandardGravityMps2 * estimate.nav.r_e_m.normalized());
+  const Eigen::Matrix3d C_dt = dt_s * estimate.nav.q_eb.toRotationMatrix();
+  const auto propagate = [&](auto& X) {
+    const auto dv = (push * X.template middleRows<3>(kPsi) +
+                     C_dt * X.template middleRows<3>(kBa)).eval();
+    X.template middleRows<3>(kPsi) -= C_dt * X.template middleRows<3>(kBg);
+    X.template middleRows<3>(kDr) += dt_s * (X.template middleRows<3>(kDv) - 0.5 * dv);
+    X.template middleRows<3>(kDv) -= dv;
+  };
+  for (Track& track : tracks_) {
+    propagate(track.U);
+    propagate(track.error);
+  }
+}
+
+void ClockMonitor::begin(const Eigen::Vector3d& v_e_mps) {
+  for (Track& track : tracks_) {
+    track.U.setZero();
+    track.U.block<3, 1>(kDr, 0) = v_e_mps;
+    track.U.block<3, 1>(kDv, 1) = a_e_mps2_;
+    track.error = track.U * track.age_s;
+  }
+  has_begun_ = true;
+}
+
+void ClockMonitor::rest(const Ekf& filter) {
+  v_e_mps_ = filter.estimate().nav.v_e_mps;
+  a_e_mps2_.setZero();
+  for (Track& track : tracks_) {
+    track.U.middleRows<3>(kDv).setZero();
+    track.error.segment<3>(kDv).setZero();
+  }
+}
+
+void ClockMonitor::take(const Measurement& m, const Ekf& filter) {
+  v_e_mps_ = filter.estimate().nav.v_e_mps;
+  if (!has_begun_) return;
+  const Rows rows(m, Eigen::Matrix<double, 6, 2>::Zero(), 1.0, filter);
+  for (Track& track : tracks_) track.pass(rows, 0.0);
+}
+
+void ClockMonitor::take(const GnssFix& fix, const UpdateOutcome& outcome, const FixTrust& trust,
+                        const Ekf& filter) {
+  v_e_mps_ = filter.estimate().nav.v_e_mps;
+  GnssFix part = fix;
+  if (outcome.outcome != UpdateOutcome::Outcome::kFused) {
+    if (!outcome.fused_in_part) return;
+    outcome.position_nis > outcome.velocity_nis ? part.position.reset() : part.velocity.reset();
+  }
+  const InertialEstimate& inertial = filter.inertial();
+  const Eigen::Vector3d antenna_e_mps =
+      antenna_velocity_e(filter.estimate(), inertial.config().lever_arm_b_m,
+                         inertial.omega_ib_b_radps());
+  Measurement m = inertial.measurement(part);
+  Eigen::Matrix<double, 6, 2> G = Eigen::Matrix<double, 6, 2>::Zero();
+  double weight = 1.0;
+  if (part.position) {
+    if (!trust.is_white) weight = position_weight_.of(fix.time);
+    position_weight_.fused(fix.time);
+    m.innovation.head<3>() = outcome.position_innovation_e_m;
+    m.R.topLeftCorner<3, 3>() *= trust.position_sigma_scale * trust.position_sigma_scale;
+    G.block<3, 1>(0, 0) = -antenna_e_mps;
+  }
+  if (part.velocity) {
+    m.innovation.tail<3>() = outcome.velocity_innovation_e_mps;
+    m.R.bottomRightCorner<3, 3>() *= trust.velocity_sigma_scale * trust.velocity_sigma_scale;
+    G.block<3, 1>(m.rows() - 3, 1) = -a_e_mps2_;
+  }
+  const double dt_s = std::max(0.0, to_seconds(fix.time - newest_));
+  newest_ = fix.time;
+  if (!has_begun_) return begin(antenna_e_mps);
+  Rows rows(m, G, weight, filter);
+  rows.leave_held(trust.held, filter.estimate());
+  learn(rows, dt_s);
+}
+
+void ClockMonitor::learn(const Rows& rows, double dt_s) {
+  tracks_[0].walk(kCrystalS2PerS * dt_s);
+  tracks_[1].walk(kSetAnewS2PerS * dt_s);
+  const double nis_scale = std::max(1.0, nis_ratio_);
+  const double nis = tracks_[0].pass(rows, nis_scale);
+  tracks_[1].pass(rows, nis_scale);
+  nis_ratio_ += (nis - rows.count * nis_ratio_) / kNisWindow;
+  nis_ratio_ = std::clamp(nis_ratio_, 0.0, 100.0);
+  // What the recent past tells, against all of it.
+  const ClockOffset lasting = fit(tracks_[0]);
+  const ClockOffset recent = fit(tracks_[1]);
+  const double change_s = std::abs(recent.value_s - lasting.value_s);
+  if (change_s > kBeyondChanceSigmas * recent.sigma_s && change_s > kLeastClockOffsetS) {
+    tracks_[0] = tracks_[1];
+    nis_ratio_ = 1.0;
+  }
+  offset_ = fit(tracks_[0]);
+}
+
+/// Of both parts or of the velocity alone, whichever explains more.
+ClockOffset ClockMonitor::fit(const Track& track) const {
+  const Eigen::Matrix2d N = track.M_s2.inverse();
+  const FixAge total_s = taken_out_s_ + track.age_s;
+  const FixAge pull = N * total_s;
+  const double both = N.sum();
+  ClockOffset offset;
+  const double nis_of_both = pull.sum() * pull.sum() / both;
+  const double nis_of_velocity = pull(1) * pull(1) / N(1, 1);
+  offset.of_velocity = nis_of_velocity > nis_of_both + kOfVelocityOdds;
+  offset.value_s = offset.of_velocity ? pull(1) / N(1, 1) : pull.sum() / both;
+  offset.sigma_s = 1.0 / std::sqrt(offset.of_velocity ? N(1, 1) : both);
+  offset.age_s = {offset.of_velocity ? 0.0 : offset.value_s, offset.value_s};
+  offset.beyond_chance = std::abs(offset.value_s) >
+                         std::max(kLeastClockOffsetS, kBeyondChanceSigmas * offset.sigma_s);
+  return offset;
+}
+
+JointVector ClockMonitor::take_out() {
+  is_followed_ = is_followed_ || offset_.beyond_chance;
+  if (!is_followed_ || !has_begun_) return JointVector::Zero();
+  const FixAge more_s =
+      offset_.age_s.cwiseMax(-kLargestTakenOutS).cwiseMin(kLargestTakenOutS) - taken_out_s_;
+  if (more_s.cwiseAbs().maxCoeff() < std::max(kLeastFollowedS, 0.3 * offset_.sigma_s)) {
+    return JointVector::Zero();
+  }
+  const Track& track = tracks_[0];
+  const JointVector correction = track.error + track.U * (more_s - track.age_s);
+  taken_out_s_ += more_s;
+  for (Track& t : tracks_) {
+    t.age_s -= more_s;
+    t.error -= correction;
+  }
+  return correction;
+}
+
+ErrorMatrix ClockMonitor::covariance() const {
+  if (!offset_.beyond_chance || !has_begun_) return ErrorMatrix::Zero();
+  const Track& track = tracks_[0];
+  const Eigen::Matrix<double, kErrorStates, 2> U = track.U.topRows<kErrorStates>();
+  const FixAge more_s = offset_.age_s - taken_out_s_ - track.age_s;
+  const ErrorVector left = track.error.head<kErrorStates>() + U * more_s;
+  const FixAge one(offset_.of_velocity ? 0.0 : 1.0, 1.0);
+  const ErrorVector by_sigma = U * one * offset_.sigma_s;
+  return left * left.transpose() + by_sigma * by_sigma.transpose();
+}
+
+}  // namespace leeway
