@@ -13,15 +13,17 @@ namespace {
 
 // Variance per second by which the ages walk. A crystal drifts by 20 ppm: 2 ms in 100 s.
 constexpr double kCrystalS2PerS = 4e-8;
-// A clock that may be set anew, as by a leap second or a logger that starts again: 0.1 s in 10 s.
-constexpr double kSetAnewS2PerS = 1e-3;
+constexpr double kLastingS = 300.0;  // what is older counts by less than a third
 constexpr double kMostUnknownS2 = 1.0;
 constexpr double kLeastClockOffsetS = 0.02;  // receivers smooth by as much
 constexpr double kBeyondChanceSigmas = 5.0;
 constexpr double kOfVelocityOdds = 9.0;  // squared sigmas by which the velocity alone explains more
 constexpr double kNisWindow = 60.0;      // components of fixes
+constexpr double kLargestNisRatio = 100.0;
 constexpr double kLeastFollowedS = 0.001;
 constexpr double kLargestTakenOutS = 5.0;
+constexpr double kSettlesS = 10.0;    // until it no longer matters where U began
+constexpr double kKnownS2 = 0.25;     // an age of which something is known
 constexpr double kShortStepS = 0.03;  // tells no acceleration
 
 }  // namespace
@@ -79,18 +81,15 @@ void ClockMonitor::Rows::leave_held(Held held, const Estimate& estimate) {
   if (held == Held::kHeadingAndTurn) leave(kBg, estimate.nav.q_eb.conjugate() * down_e);
 }
 
-// The part of a walking age that is new has not moved the filter.
-void ClockMonitor::Track::walk(double variance_s2) {
-  const Eigen::Matrix2d before = M_s2;
+void ClockMonitor::Track::forget(double factor, double variance_s2) {
+  M_s2 *= factor;
   M_s2.diagonal().array() += variance_s2;
   for (int k = 0; k < 2; ++k) {
     const double excess = M_s2(k, k) / kMostUnknownS2;
-    if (excess > 1.0) {
-      M_s2.row(k) /= std::sqrt(excess);
-      M_s2.col(k) /= std::sqrt(excess);
-    }
+    if (excess <= 1.0) continue;
+    M_s2.row(k) /= std::sqrt(excess);
+    M_s2.col(k) /= std::sqrt(excess);
   }
-  U = (U * before * M_s2.inverse()).eval();
 }
 
 /// Friedland (1969) (31)-(38), for a filter that has fused the rows with their gain.
@@ -124,6 +123,7 @@ void ClockMonitor::reach(const Ekf& filter) {
   const Estimate& estimate = filter.estimate();
   const Eigen::Vector3d dv_e_mps = estimate.nav.v_e_mps - v_e_mps_;
   v_e_mps_ = estimate.nav.v_e_mps;
+  changes_.feel(dv_e_mps);
   if (dt_s > kShortStepS) a_e_mps2_ = dv_e_mps / dt_s;
   if (!has_begun_) return;
   const Eigen::Matrix3d push = skew(
@@ -136,50 +136,69 @@ void ClockMonitor::reach(const Ekf& filter) {
     X.template middleRows<3>(kDr) += dt_s * (X.template middleRows<3>(kDv) - 0.5 * dv);
     X.template middleRows<3>(kDv) -= dv;
   };
-  for (Track& track : tracks_) {
-    propagate(track.U);
-    propagate(track.error);
-  }
+  propagate(track_.U);
+  propagate(track_.error);
 }
 
 void ClockMonitor::begin(const Eigen::Vector3d& v_e_mps) {
-  for (Track& track : tracks_) {
-    track.U.setZero();
-    track.U.block<3, 1>(kDr, 0) = v_e_mps;
-    track.U.block<3, 1>(kDv, 1) = a_e_mps2_;
-    track.error = track.U * track.age_s;
-  }
+  track_.U.setZero();
+  track_.U.block<3, 1>(kDr, 0) = v_e_mps;
+  track_.U.block<3, 1>(kDv, 1) = a_e_mps2_;
+  track_.error = track_.U * track_.age_s;
   has_begun_ = true;
+}
+
+// The innovations tell how far the filter has followed.
+void ClockMonitor::begin_anew(const Eigen::Vector3d& v_e_mps, const UpdateOutcome& outcome) {
+  begin(v_e_mps);
+  track_.error.segment<3>(kDr) += outcome.position_innovation_e_m;
+  track_.error.segment<3>(kDv) += outcome.velocity_innovation_e_mps;
+}
+
+void ClockMonitor::set_anew(double age_s, double sigma_s) {
+  constexpr double kApartS2 = 0.05 * 0.05;  // of one part's age against the other's
+  track_.age_s.setConstant(age_s);
+  track_.M_s2.setConstant(sigma_s * sigma_s);
+  track_.M_s2.diagonal().array() += 0.5 * kApartS2;
+  changes_ = VelocityChanges{};
+  offset_ = fit();
 }
 
 void ClockMonitor::rest(const Ekf& filter) {
   v_e_mps_ = filter.estimate().nav.v_e_mps;
   a_e_mps2_.setZero();
-  for (Track& track : tracks_) {
-    track.U.middleRows<3>(kDv).setZero();
-    track.error.segment<3>(kDv).setZero();
-  }
+  track_.U.middleRows<3>(kDv).setZero();
+  track_.error.segment<3>(kDv).setZero();
 }
 
 void ClockMonitor::take(const Measurement& m, const Ekf& filter) {
   v_e_mps_ = filter.estimate().nav.v_e_mps;
   if (!has_begun_) return;
   const Rows rows(m, Eigen::Matrix<double, 6, 2>::Zero(), 1.0, filter);
-  for (Track& track : tracks_) track.pass(rows, 0.0);
+  track_.pass(rows, 0.0);
 }
 
 void ClockMonitor::take(const GnssFix& fix, const UpdateOutcome& outcome, const FixTrust& trust,
-                        const Ekf& filter) {
+                        const Ekf& filter, bool is_sound) {
   v_e_mps_ = filter.estimate().nav.v_e_mps;
+  const InertialEstimate& inertial = filter.inertial();
+  const Eigen::Vector3d antenna_e_mps =
+      antenna_velocity_e(filter.estimate(), inertial.config().lever_arm_b_m,
+                         inertial.omega_ib_b_radps());
+  if (fix.velocity) {
+    changes_.push(fix, a_e_mps2_, antenna_e_mps - v_e_mps_,
+                  down_e_at(filter.estimate().nav.r_e_m));
+    const auto age = changes_.other_than(track_.age_s(1));
+    if (age && track_.M_s2(1, 1) < kKnownS2) {
+      set_anew(age->value_s, age->sigma_s);
+      begin_anew(antenna_e_mps, outcome);
+    }
+  }
   GnssFix part = fix;
   if (outcome.outcome != UpdateOutcome::Outcome::kFused) {
     if (!outcome.fused_in_part) return;
     outcome.position_nis > outcome.velocity_nis ? part.position.reset() : part.velocity.reset();
   }
-  const InertialEstimate& inertial = filter.inertial();
-  const Eigen::Vector3d antenna_e_mps =
-      antenna_velocity_e(filter.estimate(), inertial.config().lever_arm_b_m,
-                         inertial.omega_ib_b_radps());
   Measurement m = inertial.measurement(part);
   Eigen::Matrix<double, 6, 2> G = Eigen::Matrix<double, 6, 2>::Zero();
   double weight = 1.0;
@@ -197,35 +216,29 @@ void ClockMonitor::take(const GnssFix& fix, const UpdateOutcome& outcome, const 
   }
   const double dt_s = std::max(0.0, to_seconds(fix.time - newest_));
   newest_ = fix.time;
-  if (!has_begun_) return begin(antenna_e_mps);
+  if (!has_begun_) {
+    begun_ = fix.time;
+    return begin(antenna_e_mps);
+  }
   Rows rows(m, G, weight, filter);
   rows.leave_held(trust.held, filter.estimate());
-  learn(rows, dt_s);
+  const bool has_settled = to_seconds(fix.time - begun_) >= kSettlesS;
+  if (is_sound && has_settled) return learn(rows, dt_s);
+  track_.pass(rows, 0.0);
 }
 
 void ClockMonitor::learn(const Rows& rows, double dt_s) {
-  tracks_[0].walk(kCrystalS2PerS * dt_s);
-  tracks_[1].walk(kSetAnewS2PerS * dt_s);
-  const double nis_scale = std::max(1.0, nis_ratio_);
-  const double nis = tracks_[0].pass(rows, nis_scale);
-  tracks_[1].pass(rows, nis_scale);
+  track_.forget(std::exp(dt_s / kLastingS), kCrystalS2PerS * dt_s);
+  const double nis = track_.pass(rows, std::max(1.0, nis_ratio_));
   nis_ratio_ += (nis - rows.count * nis_ratio_) / kNisWindow;
-  nis_ratio_ = std::clamp(nis_ratio_, 0.0, 100.0);
-  // What the recent past tells, against all of it.
-  const ClockOffset lasting = fit(tracks_[0]);
-  const ClockOffset recent = fit(tracks_[1]);
-  const double change_s = std::abs(recent.value_s - lasting.value_s);
-  if (change_s > kBeyondChanceSigmas * recent.sigma_s && change_s > kLeastClockOffsetS) {
-    tracks_[0] = tracks_[1];
-    nis_ratio_ = 1.0;
-  }
-  offset_ = fit(tracks_[0]);
+  nis_ratio_ = std::clamp(nis_ratio_, 0.0, kLargestNisRatio);
+  offset_ = fit();
 }
 
 /// Of both parts or of the velocity alone, whichever explains more.
-ClockOffset ClockMonitor::fit(const Track& track) const {
-  const Eigen::Matrix2d N = track.M_s2.inverse();
-  const FixAge total_s = taken_out_s_ + track.age_s;
+ClockOffset ClockMonitor::fit() const {
+  const Eigen::Matrix2d N = track_.M_s2.inverse();
+  const FixAge total_s = taken_out_s_ + track_.age_s;
   const FixAge pull = N * total_s;
   const double both = N.sum();
   ClockOffset offset;
@@ -242,28 +255,26 @@ ClockOffset ClockMonitor::fit(const Track& track) const {
 
 JointVector ClockMonitor::take_out() {
   is_followed_ = is_followed_ || offset_.beyond_chance;
-  if (!is_followed_ || !has_begun_) return JointVector::Zero();
+  if (!is_followed_) return JointVector::Zero();
   const FixAge more_s =
       offset_.age_s.cwiseMax(-kLargestTakenOutS).cwiseMin(kLargestTakenOutS) - taken_out_s_;
   if (more_s.cwiseAbs().maxCoeff() < std::max(kLeastFollowedS, 0.3 * offset_.sigma_s)) {
     return JointVector::Zero();
   }
-  const Track& track = tracks_[0];
-  const JointVector correction = track.error + track.U * (more_s - track.age_s);
+  const JointVector correction =
+      has_begun_ ? JointVector(track_.error + track_.U * (more_s - track_.age_s)) : JointVector::Zero();
   taken_out_s_ += more_s;
-  for (Track& t : tracks_) {
-    t.age_s -= more_s;
-    t.error -= correction;
-  }
+  changes_.take_out(more_s(1));
+  track_.age_s -= more_s;
+  track_.error -= correction;
   return correction;
 }
 
 ErrorMatrix ClockMonitor::covariance() const {
   if (!offset_.beyond_chance || !has_begun_) return ErrorMatrix::Zero();
-  const Track& track = tracks_[0];
-  const Eigen::Matrix<double, kErrorStates, 2> U = track.U.topRows<kErrorStates>();
-  const FixAge more_s = offset_.age_s - taken_out_s_ - track.age_s;
-  const ErrorVector left = track.error.head<kErrorStates>() + U * more_s;
+  const Eigen::Matrix<double, kErrorStates, 2> U = track_.U.topRows<kErrorStates>();
+  const FixAge more_s = offset_.age_s - taken_out_s_ - track_.age_s;
+  const ErrorVector left = track_.error.head<kErrorStates>() + U * more_s;
   const FixAge one(offset_.of_velocity ? 0.0 : 1.0, 1.0);
   const ErrorVector by_sigma = U * one * offset_.sigma_s;
   return left * left.transpose() + by_sigma * by_sigma.transpose();

@@ -108,12 +108,14 @@ FixTrust NavigatorState::trust_in(const GnssFix& fix, const Ekf& filter) const {
 
 // Several filters are told apart by other things.
 void NavigatorState::watch_clock(const GnssFix& fix, const FixTrust& trust) {
-  if (!bank_->collapsed()) return clock_.restart();
+  if (!bank_->collapsed()) clock_.restart();
   Ekf& filter = bank_->best();
-  clock_.take(fix, last_update_, trust, filter);
+  const bool is_sound = bank_->collapsed();
+  clock_.take(fix, last_update_, trust, filter, is_sound);
   if (!config_.timing.estimate_clock) return;
   const JointVector correction = clock_.take_out();
   if (correction.isZero(0.0)) return;
+  if (!is_sound) return clock_.restart();
   edit(filter, [&](Belief& belief) {
     inject(belief.estimate, correction.head<kErrorStates>());
     if (belief.vehicle) belief.vehicle->value += correction.tail<kVehicleStates>();
@@ -258,7 +260,7 @@ bool NavigatorState::doubt_heading(Ekf around, const Ekf& doubting) {
   if (!headings) return false;
   headings->add(doubting, 1.0);
   if (&doubting != &bank_->best()) headings->add(bank_->best(), 1.0);
-  bank_ = *headings;
+  set_bank(*headings);
   heading_doubted_ = now;
   return true;
 }

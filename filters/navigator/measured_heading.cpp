@@ -80,7 +80,7 @@ void NavigatorState::doubt_heading_by(const MeasuredHeading& heading) {
   auto headings = bank_of_headings(doubted, HeadingBank::kWholeCircleRad);
   if (!headings) return;
   headings->add(doubted, 1.0);
-  bank_ = *headings;
+  set_bank(*headings);
   heading_weight_ = PositionWeight(kHeadingCorrelationS);  // the next one counts in full
 }
 

@@ -67,8 +67,13 @@ void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
             : HeadingBank(Ekf(filter_of(config_), estimate, P)));
 }
 
-void NavigatorState::begin(const HeadingBank& bank) {
+void NavigatorState::set_bank(const HeadingBank& bank) {
   bank_ = bank;
+  clock_.restart();
+}
+
+void NavigatorState::begin(const HeadingBank& bank) {
+  set_bank(bank);
   last_fused_ = bank_->best().estimate().nav.time;
   gate_recovery_.begin(*last_fused_);
   if (C_bs_) begin_vehicle();
@@ -116,7 +121,7 @@ void NavigatorState::open_heading() {
   if (!bank_->collapsed()) return;
   const double sigma_rad = heading_sigma_rad(bank_->best());
   if (!(sigma_rad > HeadingBank::kOneFilterRad)) return;
-  if (const auto headings = bank_of_headings(bank_->best(), sigma_rad)) bank_ = *headings;
+  if (const auto headings = bank_of_headings(bank_->best(), sigma_rad)) set_bank(*headings);
 }
 
 void NavigatorState::bridge(Time to) {
@@ -139,7 +144,7 @@ void NavigatorState::end_hole() {
   if (hole_s == 0.0 || !config_.vehicle.non_holonomic || !bank_->collapsed()) return;
   const Ekf& filter = bank_->best();
   if (const auto headings = bank_of_headings(filter, heading_sigma_rad(filter), hole_s)) {
-    bank_ = *headings;
+    set_bank(*headings);
   }
 }
 
@@ -200,8 +205,8 @@ void NavigatorState::start_beside(const GnssFix& fix, double fix_interval_s) {
   const auto found = aligner_.push(fix);
   if (!found || !can_start(found->estimate, found->P)) return;
   const Ekf filter = bank_->best();
-  bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
-                      found->turn_sigma_rad);
+  set_bank(HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
+                       found->turn_sigma_rad));
   if (C_bs_) begin_vehicle();
   // As likely as all of the others together, and the best until they explain the fixes better.
   bank_->add(filter, HeadingBank::kMaxHeadings);

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/measurement.hpp"
+#include "leeway/monitors/velocity_changes.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 #include "leeway/sensors/imu.hpp"
 
@@ -30,8 +29,7 @@ struct ClockOffset {
 };
 
 /// Kalman's filter of the ages beside an EKF, which it leaves as it is. It carries how far the
-/// error state depends on the ages, U = dx / d(age), and how far it errs by them. Two ages are
-/// followed twice: as a crystal drifts, and as a clock that may have been set anew. No heap, no
+/// error state depends on the ages, U = dx / d(age), and how far it errs by them. No heap, no
 /// exceptions. Source: Friedland (1969); docs/theory/monitors/clock_monitor.md.
 class ClockMonitor {
  public:
@@ -47,9 +45,11 @@ class ClockMonitor {
   /// Comes up to the time of the filter: right before a measurement.
   void reach(const Ekf& filter);
 
-  /// After a fix, fused or refused. @param trust  with which the filter took it
+  /// After a fix, fused or refused.
+  /// @param trust     with which the filter took it
+  /// @param is_sound  whether the filter is the only one, so that its innovations tell of the ages
   void take(const GnssFix& fix, const UpdateOutcome& outcome, const FixTrust& trust,
-            const Ekf& filter);
+            const Ekf& filter, bool is_sound);
 
   /// After another measurement was fused: of the IMU's clock, so that its innovation tells nothing.
   void take(const Measurement& m, const Ekf& filter);
@@ -66,6 +66,11 @@ class ClockMonitor {
   /// By how much fixes are taken for older than stamped.
   const FixAge& taken_out_s() const { return taken_out_s_; }
 
+  /// How far the error state is moved by an age of both parts, per second of it.
+  ErrorVector sensitivity_per_s() const {
+    return track_.U.topRows<kErrorStates>().rowwise().sum();
+  }
+
   /// Takes the offset out, once it is beyond chance, and follows it from there on. Later fixes are
   /// to be shifted by taken_out_s().
   /// @returns by what the estimate is to be corrected; zero for nothing
@@ -78,8 +83,8 @@ class ClockMonitor {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(tracks_, offset_, taken_out_s_, position_weight_, since_step_s_, v_e_mps_, a_e_mps2_,
-            nis_ratio_, newest_, has_begun_, is_followed_);
+    archive(track_, changes_, offset_, taken_out_s_, position_weight_, since_step_s_, v_e_mps_, a_e_mps2_,
+            nis_ratio_, newest_, begun_, has_begun_, is_followed_);
   }
 
  private:
@@ -93,7 +98,7 @@ class ClockMonitor {
     FixAge age_s{FixAge::Zero()};            // less what is taken out
     Eigen::Matrix2d M_s2{Eigen::Matrix2d::Identity()};
 
-    void walk(double variance_s2);
+    void forget(double factor, double variance_s2);
     double pass(const Rows& rows, double nis_scale);
 
     template <class Archive>
@@ -103,10 +108,13 @@ class ClockMonitor {
   };
 
   void begin(const Eigen::Vector3d& v_e_mps);
+  void begin_anew(const Eigen::Vector3d& v_e_mps, const UpdateOutcome& outcome);
+  void set_anew(double age_s, double sigma_s);
   void learn(const Rows& rows, double dt_s);
-  ClockOffset fit(const Track& track) const;
+  ClockOffset fit() const;
 
-  std::array<Track, 2> tracks_{};  // one that lasts, one that may change
+  Track track_{};
+  VelocityChanges changes_{};
   ClockOffset offset_{};
   FixAge taken_out_s_{FixAge::Zero()};
   PositionWeight position_weight_;
@@ -115,6 +123,7 @@ class ClockMonitor {
   Eigen::Vector3d a_e_mps2_{Eigen::Vector3d::Zero()};
   double nis_ratio_{1.0};  // of what the ages leave unexplained, to its expectation
   Time newest_{};          // fix
+  Time begun_{};
   bool has_begun_{false};
   bool is_followed_{false};  // it was taken out once
 };

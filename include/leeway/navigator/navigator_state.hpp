@@ -90,6 +90,7 @@ class NavigatorState {
   void doubt_heading_by(const MeasuredHeading& heading);
   void align(const GnssFix& fix);
   void begin(const HeadingBank& bank);
+  void set_bank(const HeadingBank& bank);
   void begin_vehicle();
   void find_mount();
   void end_hole();
