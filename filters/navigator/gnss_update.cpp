@@ -108,14 +108,14 @@ FixTrust NavigatorState::trust_in(const GnssFix& fix, const Ekf& filter) const {
 
 // Several filters are told apart by other things.
 void NavigatorState::watch_clock(const GnssFix& fix, const FixTrust& trust) {
-  if (!bank_->collapsed()) clock_.restart();
   Ekf& filter = bank_->best();
   const bool is_sound = bank_->collapsed();
+  if (!is_sound) clock_.restart(filter);
   clock_.take(fix, last_update_, trust, filter, is_sound);
   if (!config_.timing.estimate_clock) return;
   const JointVector correction = clock_.take_out();
   if (correction.isZero(0.0)) return;
-  if (!is_sound) return clock_.restart();
+  if (!is_sound) return clock_.restart(filter);
   edit(filter, [&](Belief& belief) {
     inject(belief.estimate, correction.head<kErrorStates>());
     if (belief.vehicle) belief.vehicle->value += correction.tail<kVehicleStates>();

@@ -69,7 +69,7 @@ void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
 
 void NavigatorState::set_bank(const HeadingBank& bank) {
   bank_ = bank;
-  clock_.restart();
+  clock_.restart(bank_->best());
 }
 
 void NavigatorState::begin(const HeadingBank& bank) {
@@ -131,7 +131,7 @@ void NavigatorState::bridge(Time to) {
     return;
   }
   coast_.restart();
-  clock_.restart();
+  clock_.restart(bank_->best());
   const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
   bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, hole_s_); });
   hole_s_ += dt_s;
@@ -231,9 +231,9 @@ void NavigatorState::align(const GnssFix& fix) {
 void NavigatorState::realign() {
   ++realignments_;
   contradicted_ = bank_->best().estimate().nav.time;
+  clock_.restart(bank_->best());
   bank_.reset();
   coast_ = CoastMonitor{};
-  clock_.restart();
   aligner_ = aligner_of(config_);
   C_bs_ = config_.C_bs;
   mount_ = MountEstimator{};
@@ -246,7 +246,7 @@ void NavigatorState::find_mount() {
   bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
   coast_.restart();
-  clock_.restart();
+  clock_.restart(bank_->best());
   begin_vehicle();
 }
 

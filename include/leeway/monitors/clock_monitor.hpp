@@ -58,7 +58,10 @@ class ClockMonitor {
   void rest(const Ekf& filter);
 
   /// The filter is another one: it has followed the fixes, late as they are. The ages stay.
-  void restart() { has_begun_ = false; }
+  void restart(const Ekf& filter) {
+    has_begun_ = false;
+    v_e_mps_ = filter.estimate().nav.v_e_mps;
+  }
 
   /// What is known of the ages, with what is taken out.
   const ClockOffset& offset() const { return offset_; }
