@@ -104,8 +104,8 @@ double ClockMonitor::Track::pass(const Rows& rows, double nis_scale) {
   const Eigen::Matrix<double, 6, 1> left = rows.z - expected;
   const Eigen::Matrix<double, 2, 6> by_S = V.transpose() * rows.S_inverse / nis_scale;
   const Eigen::Matrix2d information = by_S * V;
-  const bool is_sound = information(0, 0) >= 0.0 && information(1, 1) >= 0.0 &&
-                        information.determinant() >= 0.0;
+  const bool is_sound =
+      information(0, 0) >= 0.0 && information(1, 1) >= 0.0 && information.determinant() >= 0.0;
   if (is_sound) {
     M_s2 = (M_s2.inverse() + information).inverse().eval();
     M_s2 = (0.5 * (M_s2 + M_s2.transpose())).eval();
@@ -126,12 +126,12 @@ void ClockMonitor::reach(const Ekf& filter) {
   changes_.feel(dv_e_mps);
   if (dt_s > kShortStepS) a_e_mps2_ = dv_e_mps / dt_s;
   if (!has_begun_) return;
-  const Eigen::Matrix3d push = skew(
-      dv_e_mps + dt_s * kStandardGravityMps2 * estimate.nav.r_e_m.normalized());
+  const Eigen::Matrix3d push =
+      skew(dv_e_mps + dt_s * kStandardGravityMps2 * estimate.nav.r_e_m.normalized());
   const Eigen::Matrix3d C_dt = dt_s * estimate.nav.q_eb.toRotationMatrix();
   const auto propagate = [&](auto& X) {
-    const auto dv = (push * X.template middleRows<3>(kPsi) +
-                     C_dt * X.template middleRows<3>(kBa)).eval();
+    const auto dv =
+        (push * X.template middleRows<3>(kPsi) + C_dt * X.template middleRows<3>(kBa)).eval();
     X.template middleRows<3>(kPsi) -= C_dt * X.template middleRows<3>(kBg);
     X.template middleRows<3>(kDr) += dt_s * (X.template middleRows<3>(kDv) - 0.5 * dv);
     X.template middleRows<3>(kDv) -= dv;
@@ -182,12 +182,10 @@ void ClockMonitor::take(const GnssFix& fix, const UpdateOutcome& outcome, const 
                         const Ekf& filter, bool is_sound) {
   v_e_mps_ = filter.estimate().nav.v_e_mps;
   const InertialEstimate& inertial = filter.inertial();
-  const Eigen::Vector3d antenna_e_mps =
-      antenna_velocity_e(filter.estimate(), inertial.config().lever_arm_b_m,
-                         inertial.omega_ib_b_radps());
+  const Eigen::Vector3d antenna_e_mps = antenna_velocity_e(
+      filter.estimate(), inertial.config().lever_arm_b_m, inertial.omega_ib_b_radps());
   if (fix.velocity) {
-    changes_.push(fix, a_e_mps2_, antenna_e_mps - v_e_mps_,
-                  down_e_at(filter.estimate().nav.r_e_m));
+    changes_.push(fix, a_e_mps2_, antenna_e_mps - v_e_mps_, down_e_at(filter.estimate().nav.r_e_m));
     const auto age = changes_.other_than(track_.age_s(1));
     if (age && track_.M_s2(1, 1) < kKnownS2) {
       set_anew(age->value_s, age->sigma_s);
@@ -248,8 +246,8 @@ ClockOffset ClockMonitor::fit() const {
   offset.value_s = offset.of_velocity ? pull(1) / N(1, 1) : pull.sum() / both;
   offset.sigma_s = 1.0 / std::sqrt(offset.of_velocity ? N(1, 1) : both);
   offset.age_s = {offset.of_velocity ? 0.0 : offset.value_s, offset.value_s};
-  offset.beyond_chance = std::abs(offset.value_s) >
-                         std::max(kLeastClockOffsetS, kBeyondChanceSigmas * offset.sigma_s);
+  offset.beyond_chance =
+      std::abs(offset.value_s) > std::max(kLeastClockOffsetS, kBeyondChanceSigmas * offset.sigma_s);
   return offset;
 }
 
@@ -261,8 +259,8 @@ JointVector ClockMonitor::take_out() {
   if (more_s.cwiseAbs().maxCoeff() < std::max(kLeastFollowedS, 0.3 * offset_.sigma_s)) {
     return JointVector::Zero();
   }
-  const JointVector correction =
-      has_begun_ ? JointVector(track_.error + track_.U * (more_s - track_.age_s)) : JointVector::Zero();
+  JointVector correction = JointVector::Zero();
+  if (has_begun_) correction = track_.error + track_.U * (more_s - track_.age_s);
   taken_out_s_ += more_s;
   changes_.take_out(more_s(1));
   track_.age_s -= more_s;

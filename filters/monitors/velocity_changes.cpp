@@ -12,9 +12,9 @@ constexpr double kChangesS = 30.0;
 constexpr double kLongestChangeS = 2.5;  // accelerations last for less in turns
 constexpr double kSetAnewSigmas = 6.0;
 constexpr double kLeastSetAnewS = 0.15;
-constexpr double kLeastChanges = 12.0;      // components
-constexpr double kExplainedShare = 0.5;     // else it is something else that is wrong
-constexpr double kAgeInformation = 1.0;     // 1 / s^2, of before
+constexpr double kLeastChanges = 12.0;       // components
+constexpr double kExplainedShare = 0.5;      // else it is something else that is wrong
+constexpr double kAgeInformation = 1.0;      // 1 / s^2, of before
 constexpr double kHeadingInformation = 4.0;  // 1 / rad^2: 30 deg
 
 }  // namespace

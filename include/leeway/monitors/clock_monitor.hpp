@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+
 #include "leeway/ekf/ekf.hpp"
 #include "leeway/model/measurement.hpp"
 #include "leeway/monitors/velocity_changes.hpp"
@@ -70,9 +71,7 @@ class ClockMonitor {
   const FixAge& taken_out_s() const { return taken_out_s_; }
 
   /// How far the error state is moved by an age of both parts, per second of it.
-  ErrorVector sensitivity_per_s() const {
-    return track_.U.topRows<kErrorStates>().rowwise().sum();
-  }
+  ErrorVector sensitivity_per_s() const { return track_.U.topRows<kErrorStates>().rowwise().sum(); }
 
   /// Takes the offset out, once it is beyond chance, and follows it from there on. Later fixes are
   /// to be shifted by taken_out_s().
@@ -86,8 +85,8 @@ class ClockMonitor {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(track_, changes_, offset_, taken_out_s_, position_weight_, since_step_s_, v_e_mps_, a_e_mps2_,
-            nis_ratio_, newest_, begun_, has_begun_, is_followed_);
+    archive(track_, changes_, offset_, taken_out_s_, position_weight_, since_step_s_, v_e_mps_,
+            a_e_mps2_, nis_ratio_, newest_, begun_, has_begun_, is_followed_);
   }
 
  private:

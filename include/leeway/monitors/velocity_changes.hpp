@@ -27,8 +27,8 @@ class VelocityChanges {
   /// @param lever_e_mps  velocity of the antenna about the IMU
   /// @param down_e       unit vector
   /// @pre fix.velocity.
-  void push(const GnssFix& fix, const Eigen::Vector3d& a_e_mps2,
-            const Eigen::Vector3d& lever_e_mps, const Eigen::Vector3d& down_e);
+  void push(const GnssFix& fix, const Eigen::Vector3d& a_e_mps2, const Eigen::Vector3d& lever_e_mps,
+            const Eigen::Vector3d& down_e);
 
   /// The age of the last half minute, where it is beyond chance another one, and explains most of
   /// what there is. @param known_s  the age that is known

@@ -103,9 +103,8 @@ TEST_CASE("right clocks are never called wrong, in 200 trials" * doctest::test_s
   double square_sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
-    const ClockOffset found = Watch{}(seed, [](const ClockOffset& offset, double) {
-      REQUIRE_FALSE(offset.beyond_chance);
-    });
+    const ClockOffset found = Watch{}(
+        seed, [](const ClockOffset& offset, double) { REQUIRE_FALSE(offset.beyond_chance); });
     square_sum += std::pow(found.value_s / found.sigma_s, 2);
   }
   // 200 squares of a Gaussian have a mean within 0.7 and 1.35 in 99.9 % of cases; the sigma is
@@ -143,8 +142,7 @@ TEST_CASE("what is asked of the filter is what it does: the errors by an offset,
     other.update(late(bends(), *next, offset_s, offset_s));
     ++next;
     if (to_seconds(inc.time) < 60.0) continue;
-    const ErrorVector by_difference =
-        difference(right.estimate(), other.estimate()) / offset_s;
+    const ErrorVector by_difference = difference(right.estimate(), other.estimate()) / offset_s;
     const ErrorVector by_monitor = monitor.sensitivity_per_s();
     square_sum += by_difference.cwiseAbs2();
     difference_sum += (by_difference - by_monitor).cwiseAbs2();
