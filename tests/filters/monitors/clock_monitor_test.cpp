@@ -6,10 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <optional>
 
 #include "leeway/model/initial_covariance.hpp"
-#include "leeway/navigator/navigator.hpp"
 #include "tests/filters/navigator/recording.hpp"
 #include "tests/support/local_trajectory.hpp"
 
