@@ -50,16 +50,17 @@ VehicleAiding::VehicleAiding(const VehicleConfig& config, const ImuErrorModel& i
   validate(config);
 }
 
-bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
+bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank, ClockMonitor& clock) {
   const auto block = blocks_.push(inc);
   if (!block) return false;
   at_rest_ = standstill_.push(*block, bank.best());
   even_motion_s_ = standstill_.is_even(*block, bank.best()) ? even_motion_s_ + block->dt_s : 0.0;
   if (at_rest_) {
     rest(*block, bank);
+    clock.rest(bank.best());
     return false;
   }
-  const double nis = roll(*block, bank);
+  const double nis = roll(*block, bank, clock);
   return bank.collapsed() && cusum_.push(nis, 1);
 }
 
@@ -82,7 +83,8 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
 
 /// @returns the NIS of the sideways velocity, or 1 where nothing is said of it. That downwards has
 /// humps in it that say nothing of the heading.
-double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
+double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank,
+                           ClockMonitor& clock) const {
   const Ekf& best = bank.best();
   if (!config_.non_holonomic || !best.vehicle()) return 1.0;
   const double speed_mps = best.estimate().nav.v_e_mps.norm();
@@ -105,7 +107,11 @@ double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
   const double nis = std::pow(constraint(best).innovation(0), 2) /
                      (right_mps * right_mps + heading_mps * heading_mps +
                       velocity_mps * velocity_mps);
-  bank.update([&](Ekf& filter) { return filter.update(constraint(filter)); });
+  clock.reach(best);
+  const Measurement of_best = constraint(best);
+  const UpdateOutcome update =
+      bank.update([&](Ekf& filter) { return filter.update(constraint(filter)); });
+  if (update.outcome == UpdateOutcome::Outcome::kFused) clock.take(of_best, bank.best());
   return nis;
 }
 
