@@ -179,8 +179,7 @@ Json outages_json(const std::vector<sim::Coast>& coasts) {
   return rows;
 }
 
-Json results_json(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
-                  const std::vector<sim::Coast>& coasts) {
+Json results_json(const sim::CovarianceAnalysis& r, const std::vector<sim::Coast>& coasts) {
   std::vector<Source> sources = sources_of(r.error_budget);
   const double total_m2 = sources.back().horizontal_m2();
   sources.pop_back();
@@ -241,7 +240,7 @@ int run(const AnalyzeChoice& options) {
     write_file(options.error_budget, error_budget_csv(sources_of(result.error_budget)));
   }
   show(
-      options.output, answer_json("analyze", scene_json(scene), results_json(scene, result, coasts)),
+      options.output, answer_json("analyze", scene_json(scene), results_json(result, coasts)),
       [&] { print_tables(scene, result, coasts); },
       [&] {
         return Json{{"moments", shown.json()}};
