@@ -33,8 +33,8 @@ class CandidateTracks {
       return triad.in_run.sigma > 0.0 ? triad.in_run.tau_s : 0.0;
     };
     const bool has_parameters = !parameter_moments(scene.imu).empty();
-    return {noise.tau_a_s, noise.tau_g_s, drift_s(scene.imu.accelerometer),
-            drift_s(scene.imu.gyro), has_parameters ? 1.0 : 0.0};
+    return {noise.tau_a_s, noise.tau_g_s, drift_s(scene.imu.accelerometer), drift_s(scene.imu.gyro),
+            has_parameters ? 1.0 : 0.0};
   }
 
   double step_s_;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "leeway/sim/tools/parallel.hpp"
 #include "lib/earth/field_walk.hpp"
 
 namespace leeway::sim {
@@ -13,21 +15,24 @@ constexpr double kLeastGrowth = 0.02;
 constexpr int kSlopeSteps = 2;  // to each side
 const double kSlopeStep = std::log(1.1);
 
-double log_error(const Scene& scene, const ErrorTrack& track) {
-  return std::log(analyze(scene, track).true_m);
+/// The scene at intervals on both sides of its own, the longest of them at most half the scene.
+std::vector<Scene> at_other_intervals(const Scene& scene) {
+  const double log_longest = std::log(0.5 * scene.duration_s) - kSlopeSteps * kSlopeStep;
+  const double log_middle = std::min(std::log(scene.gnss.interval_s), log_longest);
+  std::vector<Scene> scenes(2 * kSlopeSteps + 1, scene);
+  for (int i = -kSlopeSteps; i <= kSlopeSteps; ++i) {
+    Scene& other = scenes[static_cast<std::size_t>(i + kSlopeSteps)];
+    other.gnss.interval_s = std::exp(log_middle + i * kSlopeStep);
+  }
+  return scenes;
 }
 
-/// d ln E / d ln T by least squares.
-double growth_at(const Scene& scene, const ErrorTrack& track) {
-  const double log_longest = std::log(0.5 * scene.duration_s);
-  const double log_middle =
-      std::min(std::log(scene.gnss.interval_s), log_longest - kSlopeSteps * kSlopeStep);
+/// d ln E / d ln T by least squares, from the log(error) of these scenes.
+double slope(std::span<const double> log_errors) {
   double above = 0.0;
   double below = 0.0;
   for (int i = -kSlopeSteps; i <= kSlopeSteps; ++i) {
-    Scene other = scene;
-    other.gnss.interval_s = std::exp(log_middle + i * kSlopeStep);
-    above += i * kSlopeStep * log_error(other, track);
+    above += i * kSlopeStep * log_errors[static_cast<std::size_t>(i + kSlopeSteps)];
     below += i * kSlopeStep * i * kSlopeStep;
   }
   return above / below;
@@ -41,14 +46,27 @@ Elasticities elasticities(const Scene& scene, const ErrorTrack& track, double in
           between(0.01, 0.5 * scene.duration_s));
   Scene at = scene;
   at.gnss.interval_s = interval_s;
-  Elasticities result{interval_s, analyze(at, track).true_m, growth_at(at, track)};
-  for (const Specification specification : specifications(at)) {
-    const double more = log_error(scaled(at, specification, std::exp(kLogStep)), track);
-    const double less = log_error(scaled(at, specification, std::exp(-kLogStep)), track);
-    Elasticity next{specification, (more - less) / (2.0 * kLogStep)};
+  const std::vector<Specification> all = specifications(at);
+  std::vector<Scene> scenes = at_other_intervals(at);
+  const std::size_t slopes = scenes.size();
+  for (const Specification specification : all) {
+    scenes.push_back(scaled(at, specification, std::exp(kLogStep)));
+    scenes.push_back(scaled(at, specification, std::exp(-kLogStep)));
+  }
+  scenes.push_back(at);
+  std::vector<double> log_errors(scenes.size());
+  const auto find_error = [&](std::size_t i) {
+    log_errors[i] = std::log(analyze(scenes[i], track).true_m);
+  };
+  parallel_for(scenes.size(), find_error);
+  Elasticities result{interval_s, std::exp(log_errors.back()),
+                      slope(std::span(log_errors).first(slopes))};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double* const pair = &log_errors[slopes + 2 * i];
+    Elasticity next{all[i], (pair[0] - pair[1]) / (2.0 * kLogStep)};
     const bool grows = result.growth > kLeastGrowth;
-    next.of_interval = grows ? -next.of_error / result.growth
-                             : std::numeric_limits<double>::quiet_NaN();
+    next.of_interval =
+        grows ? -next.of_error / result.growth : std::numeric_limits<double>::quiet_NaN();
     result.each.push_back(next);
   }
   std::ranges::stable_sort(result.each, [](const Elasticity& a, const Elasticity& b) {

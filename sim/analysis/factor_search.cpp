@@ -75,8 +75,8 @@ class FactorSearch {
     return {last, last};
   }
 
-  /// Regula falsi with Illinois weights on the mean square over the square of the factor: a straight
-  /// line but for the gains. @returns the last that keeps the limit.
+  /// Regula falsi with Illinois weights on the mean square over the square of the factor: a
+  /// straight line but for the gains. @returns the last that keeps the limit.
   Trial narrow(Trial keeper, Trial breaker) const {
     const double limit_m2 = question_.limit_m * question_.limit_m;
     double keeper_weight = 1.0;
@@ -114,8 +114,8 @@ NeededFactor needed_factor(const FactorQuestion& question, std::string name,
   needed.predicted_factor = search.predicted();
   const auto [keeper, breaker] = search.bracket(needed.predicted_factor);
   if (keeper.factor == breaker.factor) {
-    needed.outcome = search.keeps(keeper) ? NeededFactor::Outcome::kAnything
-                                          : NeededFactor::Outcome::kNotAlone;
+    needed.outcome =
+        search.keeps(keeper) ? NeededFactor::Outcome::kAnything : NeededFactor::Outcome::kNotAlone;
     needed.error_m = keeper.error_m;
     return needed;
   }

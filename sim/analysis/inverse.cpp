@@ -80,8 +80,7 @@ Scene with_factor(Scene scene, const std::vector<Specification>& what, double fa
   return scene;
 }
 
-Inverse invert(const Scene& scene, double interval_s, double limit_m,
-               const InverseConfig& config) {
+Inverse invert(const Scene& scene, double interval_s, double limit_m, const InverseConfig& config) {
   validate(scene);
   require("inverse", "interval_s, at most half the scene,", interval_s,
           between(0.01, 0.5 * scene.duration_s));

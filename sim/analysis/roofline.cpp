@@ -68,6 +68,16 @@ double Roofline::error_m(RooflineTerm term, double interval_s) const {
   return by_metric_ * sigma_m(term, interval_s);
 }
 
+double Roofline::lost_velocity_mps(double interval_s) const {
+  const double tilt_mps =
+      kRooflineGravityMps2 * imu_.gyro.noise_density * interval_s / std::sqrt(3.0);
+  const double drift_mps =
+      std::hypot(walk_density(imu_.accelerometer.in_run) * interval_s / std::sqrt(3.0),
+                 kRooflineGravityMps2 * walk_density(imu_.gyro.in_run) * interval_s * interval_s /
+                     std::sqrt(20.0));
+  return std::sqrt(interval_s) * std::hypot(imu_.accelerometer.noise_density, tilt_mps, drift_mps);
+}
+
 // The equations of docs/theory/analysis/roofline.md, per axis.
 double Roofline::sigma_m(RooflineTerm term, double interval_s) const {
   const double T = interval_s;
@@ -83,16 +93,16 @@ double Roofline::sigma_m(RooflineTerm term, double interval_s) const {
                                 std::sqrt(T * std::max(2.0 * correlation_s_, T))),
                       correlated_m_);
     case RooflineTerm::kFixVelocity:  // (3)
-      return velocity_mps_ * T;
+      return T * std::min(velocity_mps_, std::sqrt(velocity_mps_ * lost_velocity_mps(T)));
     case RooflineTerm::kAccelerometerNoise:  // (4)
       return accelerometer.noise_density * std::sqrt(std::pow(T, 3) / 3.0);
     case RooflineTerm::kAccelerometerBias:  // (5)
       return 0.5 * T * T *
              calibrated_bias(accelerometer_bias_mps2_, accelerometer.noise_density, learning_s);
     case RooflineTerm::kAccelerometerDrift:  // (6)
-      return std::min(walk_density(accelerometer.in_run) *
-                          std::sqrt(kThreeIntegrators * std::pow(T, 5)),
-                      0.5 * accelerometer.in_run.sigma * T * T);
+      return std::min(
+          walk_density(accelerometer.in_run) * std::sqrt(kThreeIntegrators * std::pow(T, 5)),
+          0.5 * accelerometer.in_run.sigma * T * T);
     case RooflineTerm::kGyroNoise:  // (7)
       return g * gyro.noise_density * std::sqrt(kThreeIntegrators * std::pow(T, 5));
     case RooflineTerm::kGyroBias:  // (8)

@@ -3,6 +3,7 @@
 #include "leeway/sim/scene/filter_file.hpp"
 #include "leeway/sim/scene/scene_file.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/quantity.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -84,7 +85,7 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->transform(named<HorizontalMetric>());
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
-      ->check(positive())
+      ->transform(metres_quantity("a limit"))
       ->type_name("M")
       ->delimiter(',');
   app.add_option("--at", choice.at_s,

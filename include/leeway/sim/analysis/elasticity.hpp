@@ -10,8 +10,8 @@
 
 namespace leeway::sim {
 
-/// The elasticity in one specification s: of the error E just before a fix, at a fixed interval, and
-/// of the interval T that keeps the limit.
+/// The elasticity in one specification s: of the error E just before a fix, at a fixed interval,
+/// and of the interval T that keeps the limit.
 struct Elasticity {
   Specification specification{};
   double of_error{};     ///< d ln E / d ln s

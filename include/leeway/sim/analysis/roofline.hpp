@@ -13,7 +13,7 @@ namespace leeway::sim {
 enum class RooflineTerm {
   kFixPosition,         ///< white noise of the position: T^0.5, then level
   kFixCorrelated,       ///< its correlated error: T^0.25, then level
-  kFixVelocity,         ///< noise of the velocity, carried on for T: T
+  kFixVelocity,         ///< noise of the velocity, less what a good IMU averages: up to T
   kAccelerometerNoise,  ///< velocity random walk: T^1.5
   kAccelerometerBias,   ///< what calibration leaves of the turn-on bias: T^2
   kAccelerometerDrift,  ///< random walk of the bias: T^2.5, then T^2
@@ -36,9 +36,8 @@ inline constexpr double kFourIntegrators = 0.0191867073083;
 /// The closed forms of a scene.
 ///
 /// Conditions: position and velocity at each fix; a filter that has settled and knows its sensors;
-/// T long beside what the IMU needs to lose as much velocity as a fix errs by, short beside a
-/// Schuler period (84 min); level motion without turns or accelerations. Scale factors,
-/// misalignments, heading and the aiding of a vehicle have no line. How far off it is:
+/// T short beside a Schuler period (84 min); level motion without turns or accelerations. Scale
+/// factors, misalignments, heading and the aiding of a vehicle have no line. How far off it is:
 /// docs/theory/analysis/roofline.md.
 class Roofline {
  public:
@@ -54,8 +53,8 @@ class Roofline {
   /// The root of the sum of their squares: sources are independent.
   double sum_m(double interval_s) const;
 
-  /// The interval at which the roof meets a limit: the least crossing of its lines. NaN unless it is
-  /// between 1 ms and 1e6 s.
+  /// The interval at which the roof meets a limit: the least crossing of its lines. NaN unless it
+  /// is between 1 ms and 1e6 s.
   double interval_s(double limit_m) const;
 
   /// The same for the sum, never longer.
@@ -63,6 +62,8 @@ class Roofline {
 
  private:
   double sigma_m(RooflineTerm term, double interval_s) const;
+  /// What white noise and random walks of the sensors make of an exact velocity.
+  double lost_velocity_mps(double interval_s) const;
 
   double by_metric_;  ///< of an error of 1 m on each axis
   double duration_s_;

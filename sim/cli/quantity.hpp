@@ -1,0 +1,23 @@
+/// @file
+/// Numbers with their unit, as people type them: 60s, 5min, 5m.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <span>
+
+#include "leeway/earth/units.hpp"
+
+namespace leeway::cli {
+
+/// Takes a number above zero with one of the units behind it, or with none, and gives it in SI.
+/// @param units  the first is what a bare number is in
+/// @param what   "a time between fixes", for messages
+CLI::Validator quantity(std::span<const Unit> units, const char* what);
+
+/// "60s" or "60": ms, s, min, h.
+CLI::Validator seconds_quantity(const char* what);
+
+/// "5m" or "5": cm, m, km.
+CLI::Validator metres_quantity(const char* what);
+
+}  // namespace leeway::cli
