@@ -10,6 +10,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kLeastFactor = 1e-3;
+constexpr double kTenth = 0.1;
 constexpr double kMostFactor = 1e3;
 constexpr double kStride = 4.0;
 constexpr int kMostSteps = 30;
@@ -19,6 +20,8 @@ struct Trial {
   double factor{};
   double error_m{};
 };
+
+bool by_error(const Trial& a, const Trial& b) { return a.error_m < b.error_m; }
 
 class FactorSearch {
  public:
@@ -63,7 +66,9 @@ class FactorSearch {
         if (keeps(guess)) return {guess, breaks};
         breaks = guess;
       }
-      const Trial least = trial(kLeastFactor);
+      // A filter that does not know of scale factors may be worse off with ever better biases.
+      Trial least = trial(kLeastFactor);
+      if (!keeps(least)) least = std::min(least, trial(kTenth), by_error);
       return keeps(least) ? std::pair(least, breaks) : std::pair(least, least);
     }
     Trial last = own_;

@@ -32,7 +32,7 @@ CLI::Option* add_need_option(CLI::App& app, std::optional<double>& need_s) {
           "--need", need_s,
           "the inverse: what of the IMU must be better, and which IMUs keep the limit, when "
           "fixes are this far apart: 60s, 5min")
-      ->transform(seconds_quantity("a time between fixes"))
+      ->transform(seconds_quantity("a time between fixes, such as 60s"))
       ->type_name("TIME");
 }
 

@@ -23,8 +23,7 @@ std::string to_si(std::string& text, std::span<const Unit> units, const char* wh
   std::vector<std::string_view> known;
   for (const Unit& unit : units) known.push_back(unit.symbol);
   const auto wanted = [&] {
-    return fmt::format("wanted {}, such as 60{}; units: {}", what, known.front(),
-                       fmt::join(known, ", "));
+    return fmt::format("wanted {}; units: {}", what, fmt::join(known, ", "));
   };
   if (error != std::errc{}) return fmt::format("'{}' is no number: {}", text, wanted());
   const auto unit =

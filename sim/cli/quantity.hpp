@@ -11,7 +11,7 @@ namespace leeway::cli {
 
 /// Takes a number above zero with one of the units behind it, or with none, and gives it in SI.
 /// @param units  the first is what a bare number is in
-/// @param what   "a time between fixes", for messages
+/// @param what   for messages: "a time between fixes, such as 60s"
 CLI::Validator quantity(std::span<const Unit> units, const char* what);
 
 /// "60s" or "60": ms, s, min, h.

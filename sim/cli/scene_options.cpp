@@ -85,7 +85,7 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   app.add_option("--metric", choice.metric, "how a horizontal error is measured")
       ->transform(named<HorizontalMetric>());
   app.add_option("--limit", choice.limits_m, "largest horizontal error, m; several with commas")
-      ->transform(metres_quantity("a limit"))
+      ->transform(metres_quantity("a limit, such as 5m"))
       ->type_name("M")
       ->delimiter(',');
   app.add_option("--at", choice.at_s,

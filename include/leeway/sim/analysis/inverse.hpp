@@ -17,14 +17,14 @@ namespace leeway::sim {
 struct NeededFactor {
   enum class Outcome {
     kFactor,    ///< below 1: so much better it must be; above 1: so much worse it may be
-    kNotAlone,  ///< even a thousandth of it leaves an error above the limit
+    kNotAlone,  ///< even a tenth and a thousandth of it leave an error above the limit
     kAnything,  ///< even a thousand times worse keeps the limit
   };
   std::string name{};  ///< of the specification, or "accelerometer", "gyro", "imu", "receiver"
   std::vector<Specification> what{};
   Outcome outcome{Outcome::kFactor};
   double factor{std::numeric_limits<double>::quiet_NaN()};  ///< NaN unless kFactor
-  double error_m{};  ///< at the factor; else at the thousandth, or thousandfold
+  double error_m{};  ///< at the factor; else the least of the two, or that of the thousandfold
   /// What the error budget alone says of it, the filter's gains kept; NaN where it has no answer.
   double predicted_factor{std::numeric_limits<double>::quiet_NaN()};
 };
