@@ -8,7 +8,7 @@
 
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
-#include "sim/cli/pages/series_table.hpp"
+#include "sim/cli/pages/roofline_series.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -67,9 +67,14 @@ void solve_limits(SolvedImu& imu, const std::vector<sim::AllowedError>& limits,
     imu.limits.push_back({answer});
   }
   SeriesTable curve({"interval_s", "true_m", "claimed_m"});
-  for (const auto& [interval_s, error] : errors_m) curve.add({interval_s, error[0], error[1]});
+  std::map<double, double> true_m;
+  for (const auto& [interval_s, error] : errors_m) {
+    curve.add({interval_s, error[0], error[1]});
+    true_m[interval_s] = error[0];
+  }
   series["curve/" + imu.scene.imu_name] = curve.json();
   series["free_inertial/" + imu.scene.imu_name] = free_inertial.json();
+  series["roofline/" + imu.scene.imu_name] = roofline_series(imu.scene, true_m).json();
 }
 
 /// The sets of aiding that vehicles of this kind can have, each with what the one before has.
@@ -141,6 +146,14 @@ void try_trials(const sim::Scene& scene, const sim::ErrorTrack& track, const sim
     throw;
   } catch (const Error& error) {
     answer.failure = error.what();
+  }
+}
+
+/// What the answers depend on, at those that are an interval.
+void solve_sensitivity(SolvedImu& imu) {
+  Progress bar("elasticities");
+  for (SolvedLimit& answer : imu.limits) {
+    if (has_interval(answer)) answer.sensitivity = sensitivity_of(imu.scene, answer.interval);
   }
 }
 
@@ -229,6 +242,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
   if (!own.gnss.outages.empty()) return solved;
   for (SolvedImu& imu : solved) {
     if (scenes.size() == 1 || imu.scene.imu_name == own.imu_name) solve_aiding(imu);
+    if (choice.with_sensitivity) solve_sensitivity(imu);
     if (choice.confirm_trials > 0) confirm(imu, choice, ranks);
   }
   if (choice.confirm_trials == 0 && !choice.no_check) check(solved, choice, own.imu_name, ranks);

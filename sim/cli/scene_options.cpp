@@ -3,6 +3,7 @@
 #include "leeway/sim/scene/filter_file.hpp"
 #include "leeway/sim/scene/scene_file.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/quantity.hpp"
 
 namespace leeway::cli {
 namespace {

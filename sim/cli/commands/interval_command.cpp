@@ -5,6 +5,7 @@
 
 #include "sim/cli/command.hpp"
 #include "sim/cli/interval_jobs.hpp"
+#include "sim/cli/need.hpp"
 #include "sim/cli/on_ranks.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/interval_tables.hpp"
@@ -14,10 +15,15 @@ namespace {
 
 struct IntervalCommand {
   IntervalChoice choice{};
+  std::optional<double> need_s{};
   Output output{};
 };
 
 int run_on(const IntervalCommand& command, const sim::Ranks& ranks) {
+  if (command.need_s) {
+    if (!ranks.is_first()) return kSuccess;
+    return answer_need(command.choice.scene, *command.need_s, command.output);
+  }
   Json series = Json::object();
   const std::vector<SolvedImu> solved = solve_imus(command.choice, ranks, series);
   if (!ranks.is_first()) return kSuccess;
@@ -47,7 +53,16 @@ void add_options(CLI::App& app, IntervalCommand& command) {
       ->needs(confirm);
   app.add_flag("--no-check", choice.no_check, "no trials at all: the linear analysis alone")
       ->excludes(confirm);
+  auto* elasticities =
+      app.add_flag("--elasticities", choice.with_sensitivity,
+                   "beside every answer, how it changes with each specification of IMU, receiver "
+                   "and aiding, its spread over the IMU's class, and closed forms of it");
   add_output_options(app, command.output);
+  add_need_option(app, command.need_s)
+      ->excludes(confirm)
+      ->excludes(elasticities)
+      ->excludes("--no-check")
+      ->excludes("--report");
 }
 
 const Command<IntervalCommand> kInterval{
@@ -60,7 +75,8 @@ const Command<IntervalCommand> kInterval{
     "Examples:\n"
     "  leeway interval --scene docs/examples/scenes/town-car.toml\n"
     "  leeway interval --scene docs/examples/scenes/square-loop.toml --imu tactical --limit 10 "
-    "--confirm 200",
+    "--confirm 200\n"
+    "  leeway interval --scene docs/examples/scenes/town-car.toml --need 60s --limit 15m",
     add_options, run};
 
 }  // namespace

@@ -266,6 +266,7 @@ Json answer_row(const SolvedImu& imu, const SolvedLimit& answer) {
   row["claimed_error_m"] = a.claimed_m;
   row["settled"] = a.settled;
   row["covariance_step_effect"] = a.step_effect;
+  if (answer.sensitivity) row.update(sensitivity_json(a, *answer.sensitivity));
   return row;
 }
 
@@ -314,6 +315,12 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
   print_optimism(solved);
   print_confirmations(solved);
   print_how(solved);
+  for (const SolvedImu& imu : solved) {
+    for (const SolvedLimit& answer : imu.limits) {
+      if (!answer.sensitivity) continue;
+      print_sensitivity(imu.scene, answer.interval, *answer.sensitivity);
+    }
+  }
 }
 
 Json interval_json(const std::vector<SolvedImu>& solved) {

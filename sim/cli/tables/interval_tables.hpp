@@ -4,6 +4,7 @@
 
 #include "leeway/sim/analysis/coast.hpp"
 #include "sim/cli/json.hpp"
+#include "sim/cli/tables/elasticity_tables.hpp"
 #include "sim/trials/confirmation.hpp"
 
 namespace leeway::cli {
@@ -13,6 +14,7 @@ struct SolvedLimit {
   sim::Interval interval{};
   std::optional<sim::Confirmation> confirmation{};  ///< absent: by the linear analysis alone
   std::string failure{};                            ///< why trials could not be run, or empty
+  std::optional<Sensitivity> sensitivity{};         ///< absent: not asked for
 
   sim::Mark mark() const { return confirmation ? confirmation->mark() : sim::Mark::kLinear; }
   /// What is to be relied on: the trials' where they contradict; NaN where nothing keeps the limit.
