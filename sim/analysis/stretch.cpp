@@ -11,7 +11,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr std::size_t kMostLevels = 12;
-constexpr std::size_t kMostBytes = 12'000'000;
+constexpr std::size_t kMostBytes = 4'000'000;
 
 /// Phi P Phi^T.
 ErrorMatrix carried(ErrorMatrix P, const Transition& Phi) {
