@@ -19,7 +19,7 @@ constexpr double kLeastClockOffsetS = 0.02;  // receivers smooth by as much
 constexpr double kBeyondChanceSigmas = 5.0;
 constexpr double kOfVelocityOdds = 9.0;  // squared sigmas by which the velocity alone explains more
 constexpr double kNisWindow = 60.0;      // components of fixes
-constexpr double kLargestNisRatio = 100.0;
+constexpr double kLargestUnexplained = 100.0;
 constexpr double kLeastFollowedS = 0.001;
 constexpr double kLargestTakenOutS = 5.0;
 constexpr double kSettlesS = 10.0;    // until it no longer matters where U began
@@ -229,7 +229,7 @@ void ClockMonitor::learn(const Rows& rows, double dt_s) {
   track_.forget(std::exp(dt_s / kLastingS), kCrystalS2PerS * dt_s);
   const double nis = track_.pass(rows, std::max(1.0, nis_ratio_));
   nis_ratio_ += (nis - rows.count * nis_ratio_) / kNisWindow;
-  nis_ratio_ = std::clamp(nis_ratio_, 0.0, kLargestNisRatio);
+  nis_ratio_ = std::clamp(nis_ratio_, 0.0, kLargestUnexplained);
   offset_ = fit();
 }
 

@@ -14,8 +14,8 @@
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/heading.hpp"
 #include "leeway/model/initial_covariance.hpp"
-#include "sim/analysis/end_analysis.hpp"
-#include "sim/analysis/repeated_fixes.hpp"
+#include "sim/analysis/doubling/end_analysis.hpp"
+#include "sim/analysis/doubling/repeated_fixes.hpp"
 #include "sim/analysis/scene_covariance.hpp"
 
 namespace leeway::sim {

@@ -7,7 +7,7 @@
 
 #include "leeway/model/error_metric.hpp"
 #include "lib/earth/field_walk.hpp"
-#include "sim/analysis/end_analysis.hpp"
+#include "sim/analysis/doubling/end_analysis.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
-#include "sim/analysis/by_metric.hpp"
+#include "sim/analysis/buying/by_metric.hpp"
 
 namespace leeway::sim {
 namespace {
 
 constexpr double kRooflineGravityMps2 = kStandardGravityMps2;
-constexpr double kShortestS = 1e-3;
-constexpr double kLongestS = 1e6;
+constexpr double kShortestRoofS = 1e-3;
+constexpr double kLongestRoofS = 1e6;
 
 /// Of north and east.
 double horizontal_rms(const Eigen::Vector3d& sigma_n) {
@@ -38,9 +38,9 @@ double walk_density(const GaussMarkov& drift) {
 /// The longest interval at which a growing error is within the limit.
 template <class F>
 double longest_within(double limit_m, F&& error_m) {
-  if (error_m(kShortestS) > limit_m || error_m(kLongestS) <= limit_m) return std::nan("");
-  double low = std::log(kShortestS);
-  double high = std::log(kLongestS);
+  if (error_m(kShortestRoofS) > limit_m || error_m(kLongestRoofS) <= limit_m) return std::nan("");
+  double low = std::log(kShortestRoofS);
+  double high = std::log(kLongestRoofS);
   while (high - low > 1e-9) {
     const double middle = 0.5 * (low + high);
     (error_m(std::exp(middle)) > limit_m ? high : low) = middle;

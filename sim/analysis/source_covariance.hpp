@@ -13,7 +13,7 @@
 #include "leeway/sensors/imu_error_model.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
 #include "sim/analysis/fix_rows.hpp"
-#include "sim/analysis/stretch.hpp"
+#include "sim/analysis/doubling/stretch.hpp"
 
 namespace leeway::sim {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "sim/cli/command.hpp"
-#include "sim/cli/interval_jobs.hpp"
-#include "sim/cli/need.hpp"
+#include "sim/cli/jobs/interval_jobs.hpp"
+#include "sim/cli/jobs/need.hpp"
 #include "sim/cli/on_ranks.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/interval_tables.hpp"

@@ -14,7 +14,7 @@
 namespace leeway {
 namespace {
 
-constexpr double kImuRateHz = 50.0;
+constexpr double kClockImuHz = 50.0;
 constexpr double kTurnsS = 120.0;
 const sim::GnssErrorModel kCode{{1.5, 1.5, 2.0}, {0.1, 0.1, 0.1}};
 
@@ -53,7 +53,7 @@ struct Watch {
   /// @param observe  after each fix
   ClockOffset operator()(std::uint64_t seed,
                          const std::function<void(const ClockOffset&, double t_s)>& observe = {}) {
-    const auto truth = sim::true_increments(way, kImuRateHz, duration_s);
+    const auto truth = sim::true_increments(way, kClockImuHz, duration_s);
     const ImuErrorModel imu = automotive_mems_model();
     const test::Recording log = test::record(way, truth, imu, gnss, 1.0, 1.0, seed);
     EkfConfig config;
@@ -115,7 +115,7 @@ TEST_CASE("what is asked of the filter is what it does: the errors by an offset,
   // The position lags by v dt, the velocity by a dt in part. U is compared where the filter has
   // forgotten its start.
   const double offset_s = 0.05;
-  const auto truth = sim::true_increments(bends(), kImuRateHz, kTurnsS);
+  const auto truth = sim::true_increments(bends(), kClockImuHz, kTurnsS);
   sim::GnssErrorModel quiet{{0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}};
   const test::Recording log =
       test::record(bends(), truth, automotive_mems_model(), quiet, 1.0, 1.0, 1);

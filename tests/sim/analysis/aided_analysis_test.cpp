@@ -14,7 +14,7 @@ namespace {
 
 using test::near;
 
-Scene town_car() {
+Scene outlier_free_town() {
   Scene scene = read_scene(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
   // Outliers are no linear errors.
   scene.gnss.outlier_probability = 0.0;
@@ -29,7 +29,7 @@ TEST_CASE("the linear analysis says what the navigator's trials err by, with aid
           doctest::test_suite("heavy")) {
   for (const bool aided : {false, true}) {
     CAPTURE(aided);
-    Scene scene = town_car();
+    Scene scene = outlier_free_town();
     if (!aided) scene.vehicle = scene_vehicle(VehicleKind::kNone);
     scene.gnss.interval_s = 10.0;
     scene.trials = 40;
@@ -46,7 +46,7 @@ TEST_CASE("the linear analysis says what the navigator's trials err by, with aid
 }
 
 TEST_CASE("what the vehicle tells never makes the true error larger, and an odometer helps most") {
-  Scene scene = town_car();
+  Scene scene = outlier_free_town();
   scene.duration_s = 900.0;
   scene.gnss.interval_s = 30.0;
   scene.vehicle = scene_vehicle(VehicleKind::kNone);
@@ -66,7 +66,7 @@ TEST_CASE("what the vehicle tells never makes the true error larger, and an odom
 }
 
 TEST_CASE("a scene with a vehicle that tells nothing is analysed as one without") {
-  Scene scene = town_car();
+  Scene scene = outlier_free_town();
   scene.duration_s = 600.0;
   scene.vehicle = scene_vehicle(VehicleKind::kNone);
   scene.estimator = SceneEstimator::kEkf;
@@ -76,7 +76,7 @@ TEST_CASE("a scene with a vehicle that tells nothing is analysed as one without"
 }
 
 TEST_CASE("the coast time ends where the error meets the limit, and an outage that long meets it") {
-  Scene scene = town_car();
+  Scene scene = outlier_free_town();
   scene.duration_s = 900.0;
   scene.gnss.latency_s = 0.0;
   scene.gnss.outages = {{400.0, 60.0}};

@@ -1,4 +1,4 @@
-#include "sim/analysis/end_analysis.hpp"
+#include "sim/analysis/doubling/end_analysis.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
-#include "sim/analysis/repeated_fixes.hpp"
+#include "sim/analysis/doubling/repeated_fixes.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/analysis/riccati_map.hpp"
+#include "sim/analysis/doubling/riccati_map.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,13 +8,13 @@
 namespace leeway::test {
 namespace {
 
-std::string scene(const char* file) {
+std::string scene_option(const char* file) {
   return " --scene " + quoted(std::filesystem::path(LEEWAY_SCENES_DIR) / file) + " ";
 }
 
 void refused(const std::string& options, const std::string& because) {
   CAPTURE(options);
-  const Outcome outcome = leeway("interval" + scene("static-45.toml") + "--at 1800 " + options);
+  const Outcome outcome = leeway("interval" + scene_option("static-45.toml") + "--at 1800 " + options);
   CHECK(outcome.exit_code == 1);
   CHECK(outcome.out.empty());
   CAPTURE(outcome.err);
@@ -24,7 +24,7 @@ void refused(const std::string& options, const std::string& because) {
 }  // namespace
 
 TEST_CASE("interval --need: factors, candidates and elasticities, as the contract says") {
-  const std::string command = "interval" + scene("static-45.toml") + "--at 1800 --imu tactical ";
+  const std::string command = "interval" + scene_option("static-45.toml") + "--at 1800 --imu tactical ";
   const auto object = leeway(command + "--need 100s --limit 10m --json").json();
   CHECK(object.at("command") == "interval");
   REQUIRE(object.at("results").size() == 1);
@@ -48,7 +48,7 @@ TEST_CASE("interval --need: factors, candidates and elasticities, as the contrac
 }
 
 TEST_CASE("interval --need: says which IMUs to buy, and when none will do") {
-  const std::string command = "interval" + scene("static-45.toml") + "--at 1800 --need 100s ";
+  const std::string command = "interval" + scene_option("static-45.toml") + "--at 1800 --need 100s ";
   const Outcome some = leeway(command + "--limit 10m");
   CHECK(some.exit_code == 0);
   CHECK(some.out.find("parts and classes keep the limit") != std::string::npos);

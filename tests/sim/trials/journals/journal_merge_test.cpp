@@ -17,7 +17,7 @@ using test::message_of;
 using test::read_file;
 using test::TempDir;
 
-constexpr std::uint64_t kScene = 0xfedcba9876543210;
+constexpr std::uint64_t kMergedScene = 0xfedcba9876543210;
 using Path = std::filesystem::path;
 
 TrialScore trial(std::uint64_t seed) {
@@ -30,13 +30,13 @@ TrialScore trial(std::uint64_t seed) {
 }
 
 Path journal_of(const Path& path, const std::vector<std::uint64_t>& seeds) {
-  TrialJournal journal(path, kScene);
+  TrialJournal journal(path, kMergedScene);
   for (const std::uint64_t seed : seeds) journal.append(trial(seed));
   return path;
 }
 
 MergedJournals merge(const std::vector<Path>& journals, bool first_may_be_new = false) {
-  return merge_journals(journals, first_may_be_new, kScene, {1, 10});
+  return merge_journals(journals, first_may_be_new, kMergedScene, {1, 10});
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ TEST_CASE("journals that differ in a trial are refused, with both names and the 
   const Path b = dir / "b";
   TrialScore other = trial(2);
   other.nees = std::nextafter(other.nees, 100.0);
-  TrialJournal(b, kScene).append(other);
+  TrialJournal(b, kMergedScene).append(other);
   for (const auto& journals : {std::vector{a, b}, std::vector{b, a}}) {
     const std::string message = message_of<Error>([&] { merge(journals); });
     CAPTURE(message);
@@ -77,7 +77,7 @@ TEST_CASE("journals that differ in a trial are refused, with both names and the 
   }
   // The third and the second agree, but the first is another.
   const Path c = dir / "c";
-  TrialJournal(c, kScene).append(other);
+  TrialJournal(c, kMergedScene).append(other);
   CHECK(contains(message_of<Error>([&] { merge({a, b, c}); }), "seed 2,"));
   CHECK(merge({b, c}).repeated == 1);
 }
@@ -87,7 +87,7 @@ TEST_CASE("a trial that is no number agrees with itself") {
   TrialScore lost = trial(1);
   lost.nees = std::nan("");
   lost.finite = false;
-  for (const char* name : {"a", "b"}) TrialJournal(dir / name, kScene).append(lost);
+  for (const char* name : {"a", "b"}) TrialJournal(dir / name, kMergedScene).append(lost);
   const MergedJournals merged = merge({dir / "a", dir / "b"});
   CHECK(merged.repeated == 1);
   CHECK(merged.sums.not_finite == 1);
@@ -121,7 +121,7 @@ TEST_CASE("a journal that is not there, a folder, another scene's") {
                  "gone: is not there; of several journals only the first may be new"));
   CHECK(contains(message_of<Error>([&] { merge({dir / "gone", a}); }), "gone: is not there"));
   CHECK(contains(message_of<Error>([&] { merge({dir / ""}); }), "is a folder"));
-  TrialJournal(dir / "other", kScene + 1).append(trial(2));
+  TrialJournal(dir / "other", kMergedScene + 1).append(trial(2));
   const std::string message = message_of<Error>([&] { merge({a, dir / "other"}); });
   CHECK(contains(message, "other: is the journal of another scene"));
   CHECK(contains(message, "leave it out"));

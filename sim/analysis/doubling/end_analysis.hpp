@@ -3,7 +3,7 @@
 #pragma once
 
 #include "leeway/sim/analysis/covariance_analysis.hpp"
-#include "sim/analysis/stretch.hpp"
+#include "sim/analysis/doubling/stretch.hpp"
 
 namespace leeway::sim {
 

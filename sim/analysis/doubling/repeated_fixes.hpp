@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "sim/analysis/scene_covariance.hpp"
-#include "sim/analysis/stretch.hpp"
+#include "sim/analysis/doubling/stretch.hpp"
 
 namespace leeway::sim {
 

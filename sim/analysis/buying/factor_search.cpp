@@ -1,10 +1,10 @@
-#include "sim/analysis/factor_search.hpp"
+#include "sim/analysis/buying/factor_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/analysis/by_metric.hpp"
+#include "sim/analysis/buying/by_metric.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -16,12 +16,12 @@ constexpr double kStride = 4.0;
 constexpr int kMostSteps = 30;
 
 /// A factor and the error it leaves.
-struct Trial {
+struct FactorTrial {
   double factor{};
   double error_m{};
 };
 
-bool by_error(const Trial& a, const Trial& b) { return a.error_m < b.error_m; }
+bool by_error(const FactorTrial& a, const FactorTrial& b) { return a.error_m < b.error_m; }
 
 class FactorSearch {
  public:
@@ -34,9 +34,9 @@ class FactorSearch {
     }
   }
 
-  bool keeps(const Trial& trial) const { return trial.error_m <= question_.limit_m; }
+  bool keeps(const FactorTrial& trial) const { return trial.error_m <= question_.limit_m; }
 
-  Trial trial(double factor) const {
+  FactorTrial trial(double factor) const {
     return {factor, analyze(with_factor(question_.scene, what_, factor), question_.track).true_m};
   }
 
@@ -58,22 +58,22 @@ class FactorSearch {
 
   /// A factor that keeps the limit and one that does not, or at an end of what is tried the same
   /// twice.
-  std::pair<Trial, Trial> bracket(double predicted) const {
+  std::pair<FactorTrial, FactorTrial> bracket(double predicted) const {
     if (!keeps(own_)) {
-      Trial breaks = own_;
+      FactorTrial breaks = own_;
       if (predicted < 1.0) {
-        const Trial guess = trial(predicted);
+        const FactorTrial guess = trial(predicted);
         if (keeps(guess)) return {guess, breaks};
         breaks = guess;
       }
       // A filter that does not know of scale factors may be worse off with ever better biases.
-      Trial least = trial(kLeastFactor);
+      FactorTrial least = trial(kLeastFactor);
       if (!keeps(least)) least = std::min(least, trial(kTenth), by_error);
       return keeps(least) ? std::pair(least, breaks) : std::pair(least, least);
     }
-    Trial last = own_;
+    FactorTrial last = own_;
     while (last.factor < kMostFactor) {
-      const Trial next = trial(std::min(kStride * last.factor, kMostFactor));
+      const FactorTrial next = trial(std::min(kStride * last.factor, kMostFactor));
       if (!keeps(next)) return {last, next};
       last = next;
     }
@@ -82,7 +82,7 @@ class FactorSearch {
 
   /// Regula falsi with Illinois weights on the mean square over the square of the factor: a
   /// straight line but for the gains. @returns the last that keeps the limit.
-  Trial narrow(Trial keeper, Trial breaker) const {
+  FactorTrial narrow(FactorTrial keeper, FactorTrial breaker) const {
     const double limit_m2 = question_.limit_m * question_.limit_m;
     double keeper_weight = 1.0;
     double breaker_weight = 1.0;
@@ -93,7 +93,7 @@ class FactorSearch {
       const double high = breaker_weight * (breaker.error_m * breaker.error_m - limit_m2);
       const double from = keeper.factor * keeper.factor;
       const double to = breaker.factor * breaker.factor;
-      const Trial next = trial(std::sqrt(from - low * (to - from) / (high - low)));
+      const FactorTrial next = trial(std::sqrt(from - low * (to - from) / (high - low)));
       const bool is_kept = keeps(next);
       (is_kept ? keeper : breaker) = next;
       (is_kept ? keeper_weight : breaker_weight) = 1.0;
@@ -105,7 +105,7 @@ class FactorSearch {
  private:
   const FactorQuestion& question_;
   const std::vector<Specification>& what_;
-  Trial own_;
+  FactorTrial own_;
   Eigen::Matrix3d scaled_n_m2_{Eigen::Matrix3d::Zero()};
   Eigen::Matrix3d kept_n_m2_{Eigen::Matrix3d::Zero()};
 };
@@ -124,7 +124,7 @@ NeededFactor needed_factor(const FactorQuestion& question, std::string name,
     needed.error_m = keeper.error_m;
     return needed;
   }
-  const Trial found = search.narrow(keeper, breaker);
+  const FactorTrial found = search.narrow(keeper, breaker);
   needed.factor = found.factor;
   needed.error_m = found.error_m;
   return needed;

@@ -1,4 +1,4 @@
-#include "sim/cli/interval_jobs.hpp"
+#include "sim/cli/jobs/interval_jobs.hpp"
 
 #include <spdlog/fmt/ranges.h>
 

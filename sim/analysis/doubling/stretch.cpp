@@ -1,4 +1,4 @@
-#include "sim/analysis/stretch.hpp"
+#include "sim/analysis/doubling/stretch.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "sim/cli/need.hpp"
+#include "sim/cli/jobs/need.hpp"
 
 #include "sim/cli/command.hpp"
 #include "sim/cli/quantity.hpp"

@@ -1,8 +1,8 @@
-#include "sim/analysis/repeated_fixes.hpp"
+#include "sim/analysis/doubling/repeated_fixes.hpp"
 
 #include <cmath>
 
-#include "sim/analysis/riccati_map.hpp"
+#include "sim/analysis/doubling/riccati_map.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr double kDenseFixes = 16.0;  // a period
-constexpr double kSamePhase = 1e-6;   // of the interval
+constexpr double kOnPattern = 1e-6;   // of the interval
 constexpr int kMostPeriods = 16;
 
 /// The states that are carried: 15 errors, those with a memory of their own, the parameters.
@@ -156,7 +156,7 @@ std::optional<FixPattern> fix_pattern(const Scene& scene, const ErrorTrack& trac
     for (int periods = 1; periods <= kMostPeriods && !pattern; ++periods) {
       const double length_s = periods * *period_s;
       const double fixes = std::round(length_s / T_s);
-      if (std::abs(length_s - fixes * T_s) > kSamePhase * T_s) continue;
+      if (std::abs(length_s - fixes * T_s) > kOnPattern * T_s) continue;
       pattern = {static_cast<int>(fixes), length_s / fixes, length_s};
     }
     const double fixes = std::round(*period_s / T_s);
