@@ -1,10 +1,10 @@
-#include "sim/analysis/buying/factor_search.hpp"
+#include "sim/analysis/sensitivity/factor_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/analysis/buying/by_metric.hpp"
+#include "sim/analysis/sensitivity/by_metric.hpp"
 
 namespace leeway::sim {
 namespace {
