@@ -1,8 +1,11 @@
 #include "sim/analysis/factor_search.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "sim/analysis/by_metric.hpp"
 
