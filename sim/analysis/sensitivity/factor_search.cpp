@@ -1,4 +1,4 @@
-#include "sim/analysis/factor_search.hpp"
+#include "sim/analysis/sensitivity/factor_search.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/analysis/by_metric.hpp"
+#include "sim/analysis/sensitivity/by_metric.hpp"
 
 namespace leeway::sim {
 namespace {

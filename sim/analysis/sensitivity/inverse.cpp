@@ -7,8 +7,8 @@
 #include "leeway/sim/sensors/imu_catalogue.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "lib/earth/field_walk.hpp"
-#include "sim/analysis/candidate_tracks.hpp"
-#include "sim/analysis/factor_search.hpp"
+#include "sim/analysis/sensitivity/candidate_tracks.hpp"
+#include "sim/analysis/sensitivity/factor_search.hpp"
 
 namespace leeway::sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
-#include "sim/analysis/by_metric.hpp"
+#include "sim/analysis/sensitivity/by_metric.hpp"
 
 namespace leeway::sim {
 namespace {
