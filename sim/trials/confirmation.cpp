@@ -69,6 +69,7 @@ double probability_of(ErrorMetric metric) {
 
 /// What a metric that is a quantile is one of.
 double size_of_error_m(ErrorMetric metric, const Eigen::Vector3d& error_n_m, double course_rad) {
+  if (!error_n_m.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::Vector2d along(std::cos(course_rad), std::sin(course_rad));
   if (metric == ErrorMetric::kAlong95) return std::abs(along.dot(error_n_m.head<2>()));
   if (metric == ErrorMetric::kCross95) {

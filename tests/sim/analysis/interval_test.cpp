@@ -9,6 +9,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/model/error_metric.hpp"
 #include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/analysis/coast.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 
@@ -138,6 +139,20 @@ TEST_CASE("a limit that grows with the way: kept at the answer, broken beyond it
   CHECK(is_passed);
   CHECK(growing.free_inertial_s >= before_s);
   CHECK(growing.free_inertial_s - before_s < 1.01);  // a step
+}
+
+TEST_CASE("coast time: what grows with the way allows more, from the fix before the outage on") {
+  Scene scene = defined_case(ImuClass::kTactical);
+  scene.duration_s = 900.0;
+  scene.gnss.outages = {{600.0, 59.5}};
+  const ErrorTrack track = error_track(scene);
+  const Coast fixed = coasts(scene, track, 5.0).front();
+  const Coast growing = coasts(scene, track, {5.0, 0.005}).front();
+  CHECK(fixed.end_error_m == growing.end_error_m);
+  CHECK(fixed.end_allowed_m == 5.0);
+  // At 20 m/s, from the fix at 600 s to that at 660 s.
+  CHECK(std::abs(growing.end_allowed_m - (5.0 + 0.005 * 1200.0)) < 0.01);
+  CHECK(growing.coast_s > 1.05 * fixed.coast_s);
 }
 
 TEST_CASE("every metric has its answer, with and without fixes; 3D asks for more than horizontal") {
