@@ -1,5 +1,6 @@
 #include "sim/analysis/sensitivity/factor_search.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>

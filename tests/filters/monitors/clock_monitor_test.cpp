@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kClockImuHz = 50.0;
 constexpr double kTurnsS = 120.0;
-const sim::GnssErrorModel kCode{{1.5, 1.5, 2.0}, {0.1, 0.1, 0.1}};
+const sim::GnssErrorModel kClockCode{{1.5, 1.5, 2.0}, {0.1, 0.1, 0.1}};
 
 /// Bends of 3 m/s^2 to the left and to the right, at 10 to 18 m/s.
 const sim::Trajectory& bends() {
@@ -47,7 +47,7 @@ struct Watch {
   double velocity_s{0.0};
   double from_s{0.0};  ///< when fixes begin to be late
   double duration_s{kTurnsS};
-  sim::GnssErrorModel gnss{kCode};
+  sim::GnssErrorModel gnss{kClockCode};
 
   /// Beside a filter that begins at the truth, as far as it claims.
   /// @param observe  after each fix

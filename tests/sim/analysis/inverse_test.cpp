@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/analysis/interval.hpp"
@@ -77,7 +78,7 @@ TEST_CASE("inverse: a round trip, where the IMU may be worse") {
 }
 
 TEST_CASE("inverse: in town, 60 s within 15 m" * doctest::test_suite("heavy")) {
-  const Scene scene = read_scene(std::string(LEEWAY_SCENES_DIR) + "/town-car.toml");
+  const Scene scene = read_scene(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
   const Inverse inverse = invert(scene, 60.0, 15.0);
   CHECK(factor_of(inverse, "gyro_drift").outcome == Outcome::kNotAlone);
   check_round_trip(scene, inverse);
@@ -86,7 +87,7 @@ TEST_CASE("inverse: in town, 60 s within 15 m" * doctest::test_suite("heavy")) {
 TEST_CASE("inverse: the error budget predicts small changes") {
   const Scene scene = at_rest(imu_class_model(ImuClass::kTactical, RangeEnd::kMid));
   const double own_m = invert(scene, 100.0, 10.0).error_m;
-  const NeededFactor& gyro = factor_of(invert(scene, 100.0, 0.95 * own_m), "gyro_noise");
+  const NeededFactor gyro = factor_of(invert(scene, 100.0, 0.95 * own_m), "gyro_noise");
   CHECK(std::abs(gyro.predicted_factor / gyro.factor - 1.0) < 0.02);
 }
 
