@@ -41,15 +41,11 @@ Verdict NavigatorState::use(const GnssFix& fix) {
   if (!was_refused) incumbent_ = bank_->best_index();
   const double fix_interval_s = to_seconds(fix.time - last_fused_.value_or(fix.time));
   bool is_explained = false;  // by any of the filters
-  FixTrust trust;
-  clock_.reach(bank_->best());
   last_update_ = bank_->update([&](Ekf& filter) {
-    trust = trust_in(fix, filter);
-    const UpdateOutcome outcome = update(filter, fix, trust);
+    const UpdateOutcome outcome = update(filter, fix);
     is_explained = is_explained || outcome.outcome == UpdateOutcome::Outcome::kFused;
     return outcome;
   });
-  watch_clock(fix, trust);
   Verdict verdict = settle(fix, is_explained);
   if (was_refused && verdict == Verdict::kFused && incumbent_ != bank_->best_index()) {
     ++resets_;
@@ -100,30 +96,10 @@ bool NavigatorState::was_opened(Time now) const {
   return heading_doubted_ && to_seconds(now - *heading_doubted_) < kOnceInS;
 }
 
-FixTrust NavigatorState::trust_in(const GnssFix& fix, const Ekf& filter) const {
+UpdateOutcome NavigatorState::update(Ekf& filter, const GnssFix& fix) const {
   const bool hides = motion_hides_heading(fix.time) && rest_hides_heading(filter);
-  return {position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
-          hides ? Held::kHeadingAndTurn : Held::kNothing, has_white_error(fix)};
-}
-
-// Several filters are told apart by other things.
-void NavigatorState::watch_clock(const GnssFix& fix, const FixTrust& trust) {
-  Ekf& filter = bank_->best();
-  const bool is_sound = bank_->collapsed();
-  if (!is_sound) clock_.restart(filter);
-  clock_.take(fix, last_update_, trust, filter, is_sound);
-  if (!config_.timing.estimate_clock) return;
-  const JointVector correction = clock_.take_out();
-  if (correction.isZero(0.0)) return;
-  if (!is_sound) return clock_.restart(filter);
-  edit(filter, [&](Belief& belief) {
-    inject(belief.estimate, correction.head<kErrorStates>());
-    if (belief.vehicle) belief.vehicle->value += correction.tail<kVehicleStates>();
-  });
-}
-
-UpdateOutcome NavigatorState::update(Ekf& filter, const GnssFix& fix,
-                                     const FixTrust& trust) const {
+  const FixTrust trust{position_noise_.sigma_scale(), velocity_noise_.sigma_scale(),
+                       hides ? Held::kHeadingAndTurn : Held::kNothing, has_white_error(fix)};
   UpdateOutcome outcome = filter.update(fix, trust);
   if (outcome.outcome != UpdateOutcome::Outcome::kGated || !fix.position || !fix.velocity) {
     return outcome;
@@ -261,7 +237,7 @@ bool NavigatorState::doubt_heading(Ekf around, const Ekf& doubting) {
   if (!headings) return false;
   headings->add(doubting, 1.0);
   if (&doubting != &bank_->best()) headings->add(bank_->best(), 1.0);
-  set_bank(*headings);
+  bank_ = *headings;
   heading_doubted_ = now;
   return true;
 }

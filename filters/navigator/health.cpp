@@ -34,16 +34,10 @@ Health NavigatorState::health(Time now) const {
       config_.filter.gnss_correlation_s == 0.0 && position_noise_.errors_last();
   health.optimistic_by =
       std::sqrt(std::max({1.0, health.position_nis_ratio, health.velocity_nis_ratio}));
-  const ClockOffset& clock = clock_.offset();
-  health.clock_offset_s = clock.value_s;
-  health.clock_offset_sigma_s = clock.sigma_s;
-  health.clock_offset_detected = clock.beyond_chance;
-  health.clock_offset_of_velocity = clock.of_velocity;
   using State = Health::State;
   health.imu_sigma_scale = bank_->best().inertial().noise_scale();
   const bool was_contradicted = contradicted_ && to_seconds(now - *contradicted_) < kDoubtS;
-  const bool clock_is_off = clock.beyond_chance && !config_.timing.estimate_clock;
-  const bool is_inconsistent = was_contradicted || clock_is_off || health.imu_sigma_scale > kBrokenImuScale ||
+  const bool is_inconsistent = was_contradicted || health.imu_sigma_scale > kBrokenImuScale ||
                                position_noise_.is_inconsistent() ||
                                velocity_noise_.is_inconsistent();
   health.state = gate_recovery_.is_row()          ? State::kGating

@@ -58,10 +58,6 @@ Verdict NavigatorState::take(const MeasuredHeading& heading) {
     return Verdict::kUnused;
   const Time now = nav.time;
   const double weight = heading_weight_.of(now);
-  constexpr double kLeastWeight2 = 1e-12;  // of a second one at the same time
-  clock_.reach(bank_->best());
-  Measurement of_best = measurement_of(heading, bank_->best());
-  of_best.R /= std::max(weight * weight, kLeastWeight2);
   const UpdateOutcome update = bank_->update(
       [&](Ekf& filter) {
         return filter.update(measurement_of(heading, filter), Held::kNothing, weight);
@@ -72,7 +68,6 @@ Verdict NavigatorState::take(const MeasuredHeading& heading) {
     return Verdict::kGated;
   }
   heading_weight_.fused(now);
-  clock_.take(of_best, bank_->best());
   refused_headings_.fused(now);
   return Verdict::kFused;
 }
@@ -85,7 +80,7 @@ void NavigatorState::doubt_heading_by(const MeasuredHeading& heading) {
   auto headings = bank_of_headings(doubted, HeadingBank::kWholeCircleRad);
   if (!headings) return;
   headings->add(doubted, 1.0);
-  set_bank(*headings);
+  bank_ = *headings;
   heading_weight_ = PositionWeight(kHeadingCorrelationS);  // the next one counts in full
 }
 

@@ -176,18 +176,17 @@ Verdict Navigator::push(const Reading& reading) {
 }
 
 Verdict Navigator::take(const GnssFix& fix) {
-  const FixAge lag_s = FixAge(config_.timing.position_lag_s, config_.timing.velocity_lag_s) +
-                       state().clock().taken_out_s();
+  const TimingConfig& timing = config_.timing;
   if (fix.heading) {
-    const Time then = fix.time - duration_from_seconds(lag_s(0));
+    const Time then = fix.time - duration_from_seconds(timing.position_lag_s);
     push(MeasuredHeading{then, fix.heading->heading_rad, fix.heading->sigma_rad});
   }
   const Time t = clock_.counted_on(fix.time);
   GnssFix position = fix;
   position.heading.reset();
   GnssFix velocity = position;
-  position.time = t - duration_from_seconds(lag_s(0));
-  velocity.time = t - duration_from_seconds(lag_s(1));
+  position.time = t - duration_from_seconds(timing.position_lag_s);
+  velocity.time = t - duration_from_seconds(timing.velocity_lag_s);
   if (!fix.position) return take({velocity.time, velocity});
   if (!fix.velocity || position.time == velocity.time) return take({position.time, position});
   velocity.position.reset();
@@ -205,16 +204,8 @@ Verdict Navigator::take(const Event& event) {
   return timeline_.push(event);
 }
 
-TimeToLimit Navigator::leeway(double limit_m, double probability) const {
-  if (!aligned()) return {};
-  if (!state().clock().offset().beyond_chance) return time_to_limit(filter(), limit_m, probability);
-  Ekf widened = filter();
-  edit(widened, [this](Belief& belief) { belief.P = state().covariance(); });
-  return time_to_limit(widened, limit_m, probability);
-}
-
 Solution Navigator::solution() const {
-  return leeway::solution(filter().estimate(), state().covariance());
+  return leeway::solution(filter().estimate(), state().bank().covariance());
 }
 
 }  // namespace leeway

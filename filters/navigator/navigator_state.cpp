@@ -39,11 +39,6 @@ ImuIncrement turned(const ImuIncrement& inc, const Eigen::Matrix3d& C_bs) {
 
 }  // namespace
 
-ErrorMatrix NavigatorState::covariance() const {
-  const ErrorMatrix P = bank_->covariance();
-  return bank_->collapsed() ? ErrorMatrix(P + clock_.covariance()) : P;
-}
-
 HeadingBank NavigatorState::any_bank() const {
   return HeadingBank(filter_anywhere(filter_of(config_)));
 }
@@ -53,7 +48,6 @@ NavigatorState::NavigatorState(const NavigatorConfig& config)
       aligner_(aligner_of(config)),
       aiding_(config.vehicle, config.filter.imu),
       course_(config.alignment.sideslip_rad, limits_of(config.vehicle.kind).drift_rad),
-      clock_(config.filter.gnss_correlation_s),
       C_bs_(config.C_bs),
       gate_recovery_(limits_of(config.vehicle.kind)) {
   validate(config);
@@ -67,13 +61,8 @@ void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
             : HeadingBank(Ekf(filter_of(config_), estimate, P)));
 }
 
-void NavigatorState::set_bank(const HeadingBank& bank) {
-  bank_ = bank;
-  clock_.restart(bank_->best());
-}
-
 void NavigatorState::begin(const HeadingBank& bank) {
-  set_bank(bank);
+  bank_ = bank;
   last_fused_ = bank_->best().estimate().nav.time;
   gate_recovery_.begin(*last_fused_);
   if (C_bs_) begin_vehicle();
@@ -106,9 +95,8 @@ void NavigatorState::integrate(const ImuIncrement& inc) {
   if (is_starting_beside_) aligner_.push(in_body);
   bank_->for_each([&](Ekf& filter) { filter.predict(in_body); });
   coast_.push(in_body);
-  clock_.push(in_body, bank_->best());
   const bool rested = aiding_.at_rest();
-  if (aiding_.push(in_body, *bank_, clock_)) {
+  if (aiding_.push(in_body, *bank_)) {
     contradicted_ = inc.time;
     doubt_heading(bank_->best(), bank_->best());
   }
@@ -121,7 +109,7 @@ void NavigatorState::open_heading() {
   if (!bank_->collapsed()) return;
   const double sigma_rad = heading_sigma_rad(bank_->best());
   if (!(sigma_rad > HeadingBank::kOneFilterRad)) return;
-  if (const auto headings = bank_of_headings(bank_->best(), sigma_rad)) set_bank(*headings);
+  if (const auto headings = bank_of_headings(bank_->best(), sigma_rad)) bank_ = *headings;
 }
 
 void NavigatorState::bridge(Time to) {
@@ -131,7 +119,6 @@ void NavigatorState::bridge(Time to) {
     return;
   }
   coast_.restart();
-  clock_.restart(bank_->best());
   const double dt_s = to_seconds(to - bank_->best().estimate().nav.time);
   bank_->for_each([&](Ekf& filter) { leeway::bridge(filter, to, hole_s_); });
   hole_s_ += dt_s;
@@ -144,7 +131,7 @@ void NavigatorState::end_hole() {
   if (hole_s == 0.0 || !config_.vehicle.non_holonomic || !bank_->collapsed()) return;
   const Ekf& filter = bank_->best();
   if (const auto headings = bank_of_headings(filter, heading_sigma_rad(filter), hole_s)) {
-    set_bank(*headings);
+    bank_ = *headings;
   }
 }
 
@@ -156,17 +143,11 @@ template <AidingReading R>
 Verdict NavigatorState::take(const R& reading) {
   if (!(config_.vehicle.*R::kIsOn)) return Verdict::kUnused;
   if (!bank_ || !C_bs_) return Verdict::kAligning;
-  const auto measured = [&](const Ekf& filter) {
-    return measurement(reading, filter.estimate(), filter.vehicle()->value,
-                       filter.inertial().omega_ib_b_radps());
-  };
-  clock_.reach(bank_->best());
-  const Measurement of_best = measured(bank_->best());
-  const UpdateOutcome update =
-      bank_->update([&](Ekf& filter) { return filter.update(measured(filter)); });
-  if (update.outcome != UpdateOutcome::Outcome::kFused) return Verdict::kGated;
-  clock_.take(of_best, bank_->best());
-  return Verdict::kFused;
+  const UpdateOutcome update = bank_->update([&](Ekf& filter) {
+    return filter.update(measurement(reading, filter.estimate(), filter.vehicle()->value,
+                                     filter.inertial().omega_ib_b_radps()));
+  });
+  return update.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }
 
 // At constant velocity as at rest the specific force is along gravity: neither heading nor the
@@ -205,8 +186,8 @@ void NavigatorState::start_beside(const GnssFix& fix, double fix_interval_s) {
   const auto found = aligner_.push(fix);
   if (!found || !can_start(found->estimate, found->P)) return;
   const Ekf filter = bank_->best();
-  set_bank(HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
-                       found->turn_sigma_rad));
+  bank_ = HeadingBank(filter.inertial().config(), found->estimate, found->P, found->axis_e,
+                      found->turn_sigma_rad);
   if (C_bs_) begin_vehicle();
   // As likely as all of the others together, and the best until they explain the fixes better.
   bank_->add(filter, HeadingBank::kMaxHeadings);
@@ -231,7 +212,6 @@ void NavigatorState::align(const GnssFix& fix) {
 void NavigatorState::realign() {
   ++realignments_;
   contradicted_ = bank_->best().estimate().nav.time;
-  clock_.restart(bank_->best());
   bank_.reset();
   coast_ = CoastMonitor{};
   aligner_ = aligner_of(config_);
@@ -246,7 +226,6 @@ void NavigatorState::find_mount() {
   bank_->for_each([&](Ekf& filter) { filter.turn_body_axes(*C_bs, config_.filter.lever_arm_b_m); });
   C_bs_ = C_bs;
   coast_.restart();
-  clock_.restart(bank_->best());
   begin_vehicle();
 }
 

@@ -50,17 +50,16 @@ VehicleAiding::VehicleAiding(const VehicleConfig& config, const ImuErrorModel& i
   validate(config);
 }
 
-bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank, ClockMonitor& clock) {
+bool VehicleAiding::push(const ImuIncrement& inc, HeadingBank& bank) {
   const auto block = blocks_.push(inc);
   if (!block) return false;
   at_rest_ = standstill_.push(*block, bank.best());
   even_motion_s_ = standstill_.is_even(*block, bank.best()) ? even_motion_s_ + block->dt_s : 0.0;
   if (at_rest_) {
     rest(*block, bank);
-    clock.rest(bank.best());
     return false;
   }
-  const double nis = roll(*block, bank, clock);
+  const double nis = roll(*block, bank);
   return bank.collapsed() && cusum_.push(nis, 1);
 }
 
@@ -83,8 +82,7 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
 
 /// @returns the NIS of the sideways velocity, or 1 where nothing is said of it. That downwards has
 /// humps in it that say nothing of the heading.
-double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank,
-                           ClockMonitor& clock) const {
+double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
   const Ekf& best = bank.best();
   if (!config_.non_holonomic || !best.vehicle()) return 1.0;
   const double speed_mps = best.estimate().nav.v_e_mps.norm();
@@ -107,11 +105,7 @@ double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank,
   const double nis = std::pow(constraint(best).innovation(0), 2) /
                      (right_mps * right_mps + heading_mps * heading_mps +
                       velocity_mps * velocity_mps);
-  clock.reach(best);
-  const Measurement of_best = constraint(best);
-  const UpdateOutcome update =
-      bank.update([&](Ekf& filter) { return filter.update(constraint(filter)); });
-  if (update.outcome == UpdateOutcome::Outcome::kFused) clock.take(of_best, bank.best());
+  bank.update([&](Ekf& filter) { return filter.update(constraint(filter)); });
   return nis;
 }
 

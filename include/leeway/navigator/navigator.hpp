@@ -53,7 +53,9 @@ class Navigator {
 
   /// How long from the newest IMU time, without another fix, the horizontal error stays within the
   /// limit with the given probability (time_to_limit); 0 before alignment.
-  TimeToLimit leeway(double limit_m, double probability = 0.95) const;
+  TimeToLimit leeway(double limit_m, double probability = 0.95) const {
+    return aligned() ? time_to_limit(filter(), limit_m, probability) : TimeToLimit{};
+  }
 
   /// Sensor axes to body axes; nothing while the mount is unknown.
   const std::optional<Eigen::Matrix3d>& C_bs() const { return state().C_bs(); }

@@ -9,7 +9,6 @@
 
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/alignment.hpp"
-#include "leeway/monitors/clock_monitor.hpp"
 #include "leeway/monitors/coast_monitor.hpp"
 #include "leeway/monitors/course_monitor.hpp"
 #include "leeway/monitors/fix_screen.hpp"
@@ -51,11 +50,6 @@ class NavigatorState {
   /// @pre aligned().
   const HeadingBank& bank() const { return *bank_; }
 
-  /// bank().covariance(), and what an offset of the clocks adds. @pre aligned().
-  ErrorMatrix covariance() const;
-
-  const ClockMonitor& clock() const { return clock_; }
-
   /// Sensor axes to body axes, as far as known.
   const std::optional<Eigen::Matrix3d>& C_bs() const { return C_bs_; }
 
@@ -68,7 +62,7 @@ class NavigatorState {
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {
-    archive(imu_screen_, hole_s_, screen_, aligner_, aiding_, course_, mount_, clock_, position_noise_,
+    archive(imu_screen_, hole_s_, screen_, aligner_, aiding_, course_, mount_, position_noise_,
             velocity_noise_, C_bs_, last_update_, last_fused_, gate_recovery_, incumbent_,
             heading_weight_, refused_headings_, heading_doubted_, contradicted_,
             is_starting_beside_, repairs_, resets_, realignments_);
@@ -81,16 +75,13 @@ class NavigatorState {
   HeadingBank any_bank() const;
   Verdict take(const GnssFix& fix);
   Verdict use(const GnssFix& fix);
-  FixTrust trust_in(const GnssFix& fix, const Ekf& filter) const;
-  UpdateOutcome update(Ekf& filter, const GnssFix& fix, const FixTrust& trust) const;
-  void watch_clock(const GnssFix& fix, const FixTrust& trust);
+  UpdateOutcome update(Ekf& filter, const GnssFix& fix) const;
   template <AidingReading R>
   Verdict take(const R& reading);
   Verdict take(const MeasuredHeading& heading);
   void doubt_heading_by(const MeasuredHeading& heading);
   void align(const GnssFix& fix);
   void begin(const HeadingBank& bank);
-  void set_bank(const HeadingBank& bank);
   void begin_vehicle();
   void find_mount();
   void end_hole();
@@ -121,7 +112,6 @@ class NavigatorState {
   CourseMonitor course_;
   CoastMonitor coast_{};
   MountEstimator mount_{};
-  ClockMonitor clock_;
   ReceiverNoise position_noise_{1.0, false};  // its errors are those of the fix before
   // A third: some state for each axis what is of all three, or the double of it.
   ReceiverNoise velocity_noise_{1.0 / 3.0, true};

@@ -5,7 +5,6 @@
 #include "leeway/earth/fields.hpp"
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/navigator/heading_bank.hpp"
-#include "leeway/monitors/clock_monitor.hpp"
 #include "leeway/monitors/nis_cusum.hpp"
 #include "leeway/monitors/standstill.hpp"
 #include "leeway/navigator/vehicle_kind.hpp"
@@ -86,9 +85,8 @@ class VehicleAiding {
   VehicleAiding(const VehicleConfig& config, const ImuErrorModel& imu);
 
   /// Right after the filters have been advanced by inc.
-  /// @param clock  is told what the only filter is told
   /// @returns whether the constraints contradict the only filter, beyond chance
-  bool push(const ImuIncrement& inc, HeadingBank& bank, ClockMonitor& clock);
+  bool push(const ImuIncrement& inc, HeadingBank& bank);
 
   bool at_rest() const { return at_rest_; }
 
@@ -103,7 +101,7 @@ class VehicleAiding {
 
  private:
   void rest(const ImuBlock& block, HeadingBank& bank) const;
-  double roll(const ImuBlock& block, HeadingBank& bank, ClockMonitor& clock) const;
+  double roll(const ImuBlock& block, HeadingBank& bank) const;
 
   VehicleConfig config_;
   double gyro_noise_rad_per_sqrt_s_;
