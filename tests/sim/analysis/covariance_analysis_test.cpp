@@ -148,7 +148,8 @@ TEST_CASE("along and across the track by hand, on a circle that turns through ev
       largest_m = std::max(largest_m, 1.959963985 * std::sqrt(axis_n.dot(P * axis_n)));
     };
     const CovarianceAnalysis r = analyze(scene, track, config);
-    CHECK(std::abs(r.true_m / largest_m - 1.0) < 1e-9);
+    // The path that the course is taken from has a point a step; between them it is a chord.
+    CHECK(std::abs(r.true_m / largest_m - 1.0) < 2e-3);
     CHECK(least_north < -0.8);  // the course has turned
   }
 }

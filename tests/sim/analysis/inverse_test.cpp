@@ -78,7 +78,10 @@ TEST_CASE("inverse: a round trip, where the IMU may be worse") {
 }
 
 TEST_CASE("inverse: in town, 60 s within 15 m" * doctest::test_suite("heavy")) {
-  const Scene scene = read_scene(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
+  // Without what the vehicle tells: with it the error falls again where fixes come in step with the
+  // loop, and a round trip may end at a longer interval.
+  Scene scene = read_scene(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
+  scene.vehicle.reset();
   const Inverse inverse = invert(scene, 60.0, 15.0);
   CHECK(factor_of(inverse, "gyro_drift").outcome == Outcome::kNotAlone);
   check_round_trip(scene, inverse);
