@@ -55,12 +55,14 @@ Elasticities elasticities(const Scene& scene, const ErrorTrack& track, double in
   }
   scenes.push_back(at);
   std::vector<double> log_errors(scenes.size());
+  double error_m = 0.0;
   const auto find_error = [&](std::size_t i) {
-    log_errors[i] = std::log(analyze(scenes[i], track).true_m);
+    const CovarianceAnalysis analysis = analyze(scenes[i], track);
+    log_errors[i] = std::log(analysis.true_m / analysis.allowed_m);
+    if (i + 1 == scenes.size()) error_m = analysis.true_m;
   };
   parallel_for(scenes.size(), find_error);
-  Elasticities result{interval_s, std::exp(log_errors.back()),
-                      slope(std::span(log_errors).first(slopes))};
+  Elasticities result{interval_s, error_m, slope(std::span(log_errors).first(slopes))};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double* const pair = &log_errors[slopes + 2 * i];
     Elasticity next{all[i], (pair[0] - pair[1]) / (2.0 * kLogStep)};

@@ -17,7 +17,7 @@ std::optional<ImuClass> class_with_range(const std::string& imu) {
 
 }  // namespace
 
-std::optional<IntervalSpread> interval_spread(const Scene& scene, double limit_m,
+std::optional<IntervalSpread> interval_spread(const Scene& scene, const AllowedError& limit,
                                               const IntervalConfig& config) {
   const std::optional<ImuClass> imu_class = class_with_range(scene.imu_name);
   if (!imu_class) return {};
@@ -28,7 +28,7 @@ std::optional<IntervalSpread> interval_spread(const Scene& scene, double limit_m
     Scene at_end = scene;
     set_imu(at_end, std::string(name(*imu_class)) + "/" + std::string(name(end)),
             with_bias_model(imu_class_model(*imu_class, end), bias, tau_s));
-    return solve_intervals(at_end, {limit_m}, config).front();
+    return solve_intervals(at_end, {limit}, config).front();
   };
   return IntervalSpread{at(RangeEnd::kLow), at(RangeEnd::kMid), at(RangeEnd::kHigh)};
 }

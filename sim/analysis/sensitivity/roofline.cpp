@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/model/error_metric.hpp"
 #include "sim/analysis/sensitivity/by_metric.hpp"
 
 namespace leeway::sim {
@@ -12,6 +13,11 @@ namespace {
 constexpr double kRooflineGravityMps2 = kStandardGravityMps2;
 constexpr double kShortestRoofS = 1e-3;
 constexpr double kLongestRoofS = 1e6;
+
+/// The lines are those of a horizontal error, and what they cross is level.
+bool has_lines(const ErrorLimit& limit) {
+  return !asks_for_height(limit.metric) && limit.share == 0.0;
+}
 
 /// Of north and east.
 double horizontal_rms(const Eigen::Vector3d& sigma_n) {
@@ -51,7 +57,8 @@ double longest_within(double limit_m, F&& error_m) {
 }  // namespace
 
 Roofline::Roofline(const Scene& scene)
-    : by_metric_(size_by_metric_m(scene, Eigen::Matrix3d::Identity())),
+    : by_metric_(has_lines(scene.limit) ? size_by_metric_m(scene, Eigen::Matrix3d::Identity())
+                                        : 0.0),
       duration_s_(scene.duration_s),
       position_m_(horizontal_rms(scene.gnss.errors.position_sigma_n_m)),
       correlated_m_(horizontal_rms(scene.gnss.errors.correlated_sigma_n_m)),

@@ -32,9 +32,11 @@ Json relative_error(double predicted_s, double exact_s) { return predicted_s / e
 }  // namespace
 
 Sensitivity sensitivity_of(const sim::Scene& scene, const sim::Interval& answer) {
-  const sim::Roofline roofline(scene);
-  return {sim::elasticities(scene, sim::error_track(scene), answer.interval_s),
-          sim::interval_spread(scene, answer.limit_m), roofline.interval_s(answer.limit_m),
+  sim::Scene limited = scene;
+  limited.limit.allow(answer.allowed());
+  const sim::Roofline roofline(limited);
+  return {sim::elasticities(limited, sim::error_track(limited), answer.interval_s),
+          sim::interval_spread(limited, answer.allowed()), roofline.interval_s(answer.limit_m),
           roofline.sum_interval_s(answer.limit_m)};
 }
 

@@ -70,6 +70,22 @@ TEST_CASE("elasticity: where the filter knows all, errors of all sources add up 
   CHECK(std::abs(sum - 1.0) < 0.01);
 }
 
+TEST_CASE("elasticity: where the limit grows with the way, as an interval solved again") {
+  Scene scene = scene_at_rest();
+  scene.trajectory = straight({.duration_s = 3600.0});
+  const AllowedError allowed{3.0, 0.002};
+  scene.limit.allow(allowed);
+  const Specification noise = Specification::kGyroNoise;
+  const double own_s = solve_intervals(scene, {allowed}).front().interval_s;
+  const auto solved_s = [&](double factor) {
+    return solve_intervals(scaled(scene, noise, factor), {allowed}).front().interval_s;
+  };
+  const double again = std::log(solved_s(1.1) / solved_s(1.0 / 1.1)) / (2.0 * std::log(1.1));
+  for (const Elasticity& e : elasticities(scene, error_track(scene), own_s).each) {
+    if (e.specification == noise) CHECK(std::abs(e.of_interval - again) < 0.02);
+  }
+}
+
 TEST_CASE("elasticity: the largest comes first, and wrong intervals are refused") {
   const Scene scene = scene_at_rest();
   const ErrorTrack track = error_track(scene);

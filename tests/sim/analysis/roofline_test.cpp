@@ -193,6 +193,18 @@ TEST_CASE("roofline: lines rise, the sum is above the roof, and crossings meet t
   CHECK_THROWS_AS(Roofline{scene}, Error);
 }
 
+TEST_CASE("roofline: none for heights and for limits that grow with the way") {
+  // 2026-12: lines of a horizontal error stood beside answers of either.
+  Scene scene = exact_scene(1.0);
+  set_imu(scene, "automotive-mems", automotive_mems_model());
+  scene.limit.metric = ErrorMetric::kVertical95;
+  CHECK(std::isnan(Roofline(scene).interval_s(10.0)));
+  scene.limit.metric = ErrorMetric::kCross95;
+  CHECK(Roofline(scene).interval_s(10.0) > 1.0);
+  scene.limit.share = 0.05;
+  CHECK(std::isnan(Roofline(scene).interval_s(10.0)));
+}
+
 TEST_CASE("roofline: intervals by the least crossing against solve_intervals(), at rest" *
           doctest::test_suite("heavy")) {
   // The table of docs/theory/analysis/roofline.md: an interval where two lines meet is the worst.

@@ -11,7 +11,8 @@
 namespace leeway::sim {
 
 /// The elasticity in one specification s: of the error E just before a fix, at a fixed interval,
-/// and of the interval T that keeps the limit.
+/// and of the interval T that keeps the limit. Where the limit grows with the way, E is
+/// the error over what is allowed.
 struct Elasticity {
   Specification specification{};
   double of_error{};     ///< d ln E / d ln s

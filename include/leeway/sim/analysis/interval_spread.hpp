@@ -20,7 +20,7 @@ struct IntervalSpread {
 /// its IMU tells: "tactical/mid". A part of the catalogue has none, being one number each, nor has
 /// a model of the user's.
 /// @throws Error as solve_intervals() does.
-std::optional<IntervalSpread> interval_spread(const Scene& scene, double limit_m,
+std::optional<IntervalSpread> interval_spread(const Scene& scene, const AllowedError& limit,
                                               const IntervalConfig& config = {});
 
 }  // namespace leeway::sim

@@ -37,7 +37,8 @@ inline constexpr double kFourIntegrators = 0.0191867073083;
 ///
 /// Conditions: position and velocity at each fix; a filter that has settled and knows its sensors;
 /// T short beside a Schuler period (84 min); level motion without turns or accelerations. Scale
-/// factors, misalignments, heading and the aiding of a vehicle have no line. How far off it is:
+/// factors, misalignments, heading and the aiding of a vehicle have no line; a metric
+/// of the height and a limit that grows with the way have none at all. How far off it is:
 /// docs/theory/analysis/roofline.md.
 class Roofline {
  public:
