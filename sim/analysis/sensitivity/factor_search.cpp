@@ -69,7 +69,7 @@ class FactorSearch {
       }
       // A filter that does not know of scale factors may be worse off with ever better biases.
       FactorTrial least = trial(kLeastFactor);
-      if (!keeps(least)) least = std::min(least, trial(kTenth), by_error);
+      if (least.error_m > own_.error_m) least = std::min(least, trial(kTenth), by_error);
       return keeps(least) ? std::pair(least, breaks) : std::pair(least, least);
     }
     FactorTrial last = own_;

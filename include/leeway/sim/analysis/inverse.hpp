@@ -17,7 +17,7 @@ namespace leeway::sim {
 struct NeededFactor {
   enum class Outcome {
     kFactor,    ///< below 1: so much better it must be; above 1: so much worse it may be
-    kNotAlone,  ///< even a tenth and a thousandth of it leave an error above the limit
+    kNotAlone,  ///< even a thousandth of it, or a tenth, leaves too large an error
     kAnything,  ///< even a thousand times worse keeps the limit
   };
   std::string name{};  ///< of the specification, or "accelerometer", "gyro", "imu", "receiver"
