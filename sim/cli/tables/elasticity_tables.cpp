@@ -69,10 +69,11 @@ void print_sensitivity(const sim::Scene& scene, const sim::Interval& answer,
   print_spread(scene, sensitivity.spread);
   if (std::isnan(sensitivity.roofline_s)) return;
   fmt::print(
-      "Closed forms: {:.3g} s ({:+.0f} %) where the first line crosses the limit, {:.3g} s "
+      "Closed forms{}: {:.3g} s ({:+.0f} %) where the first line crosses the limit, {:.3g} s "
       "({:+.0f} %) for their sum.\n",
-      sensitivity.roofline_s, 100.0 * (sensitivity.roofline_s / answer.interval_s - 1.0),
-      sensitivity.roofline_sum_s, 100.0 * (sensitivity.roofline_sum_s / answer.interval_s - 1.0));
+      scene.vehicle ? ", which know no aiding of a vehicle" : "", sensitivity.roofline_s,
+      100.0 * (sensitivity.roofline_s / answer.interval_s - 1.0), sensitivity.roofline_sum_s,
+      100.0 * (sensitivity.roofline_sum_s / answer.interval_s - 1.0));
 }
 
 Json sensitivity_json(const sim::Interval& answer, const Sensitivity& sensitivity) {
