@@ -35,8 +35,7 @@ struct CircularLimit {
   /// The sign of excess, for less work where bounds on the probability settle it: the error along
   /// the major axis alone, and a circle with that axis all round. Not a number is beyond.
   bool exceeded(const Eigen::Matrix2d& P_m2) const {
-    const double spread = std::hypot(0.5 * (P_m2(0, 0) - P_m2(1, 1)), P_m2(0, 1));
-    const double u = 0.5 * limit_m * limit_m / (0.5 * P_m2.trace() + spread);
+    const double u = 0.5 * limit_m * limit_m / principal_variances(P_m2).x();
     if (-u <= log_tail) return false;
     if (std::log(std::erfc(std::sqrt(u))) > log_tail) return true;
     return !(excess(P_m2) <= 0.0);

@@ -16,12 +16,22 @@ double sigma_along_m(const Eigen::Matrix3d& P_n_m2, double angle_rad) {
   return std::sqrt(std::max(u.dot(P_n_m2.topLeftCorner<2, 2>() * u), 0.0));
 }
 
-double largest_axis_m(const Eigen::Matrix3d& P) {
-  const double mean = 0.5 * (P(0, 0) + P(1, 1));
-  return std::sqrt(mean + std::hypot(0.5 * (P(0, 0) - P(1, 1)), P(0, 1)));
-}
-
 }  // namespace
+
+double size_of_error_m(ErrorMetric metric, const Eigen::Vector3d& error_n_m, double course_rad) {
+  const double north = std::cos(course_rad);
+  const double east = std::sin(course_rad);
+  switch (metric) {
+    case ErrorMetric::kAlong95:
+      return std::abs(north * error_n_m.x() + east * error_n_m.y());
+    case ErrorMetric::kCross95:
+      return std::abs(north * error_n_m.y() - east * error_n_m.x());
+    case ErrorMetric::kVertical95:
+      return std::abs(error_n_m.z());
+    default:
+      return error_n_m.head<2>().norm();
+  }
+}
 
 Eigen::Matrix3d ned_covariance(const Eigen::Vector3d& r_e_m, const Eigen::Matrix3d& P_rr_e_m2) {
   const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(r_e_m));
@@ -54,7 +64,7 @@ double error_size_m(ErrorMetric metric, const Eigen::Matrix3d& P_n_m2, double co
     case ErrorMetric::kVertical95:
       return kSigmasOf95 * std::sqrt(P_n_m2(2, 2));
     case ErrorMetric::kAxis:
-      return largest_axis_m(P_n_m2);
+      return std::sqrt(principal_variances(P_n_m2.topLeftCorner<2, 2>()).x());
     case ErrorMetric::k3d:
       break;
   }

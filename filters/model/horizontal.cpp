@@ -11,13 +11,6 @@
 namespace leeway {
 namespace {
 
-/// Variances along the principal axes, larger first.
-Eigen::Vector2d principal_variances(const Eigen::Matrix2d& P) {
-  const double mean = 0.5 * P.trace();
-  const double spread = std::hypot(0.5 * (P(0, 0) - P(1, 1)), P(0, 1));
-  return {mean + spread, std::max(mean - spread, 0.0)};
-}
-
 /// P(radius > r) and minus its derivative, for principal variances a >= b: with the error written
 /// as (sqrt(a) rho cos(u), sqrt(b) rho sin(u)), the mean over u of exp(-r^2 / (2 (a cos^2 u + b
 /// sin^2 u))). The midpoint rule converges faster than any power on a smooth periodic function.
@@ -54,6 +47,12 @@ Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
                                       const Eigen::Matrix3d& P_rr_e_m2) {
   const Eigen::Matrix<double, 3, 2> C_e_ne = ned_to_ecef(geodetic_from_ecef(r_e_m)).leftCols<2>();
   return C_e_ne.transpose() * P_rr_e_m2 * C_e_ne;
+}
+
+Eigen::Vector2d principal_variances(const Eigen::Matrix2d& P) {
+  const double mean = 0.5 * P.trace();
+  const double spread = std::hypot(0.5 * (P(0, 0) - P(1, 1)), P(0, 1));
+  return {mean + spread, std::max(mean - spread, 0.0)};
 }
 
 double horizontal_radius_m(const Eigen::Matrix2d& P_ne_m2, double probability) {

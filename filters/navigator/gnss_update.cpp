@@ -9,11 +9,8 @@ namespace {
 
 constexpr double kOpenRad = 20.0 * kRadPerDeg;  // of heading: one linearized filter is not enough
 
-/// Carrier phase with fixed ambiguities: what is left is noise and multipath of centimetres, which
-/// changes with every few metres. Errors of code last for half a minute.
 bool has_white_error(const GnssFix& fix) {
-  constexpr double kFixedM = 0.05;  // a quarter of the carrier's wavelength
-  return fix.position && fix.position->R_e_m2.trace() < 3.0 * kFixedM * kFixedM;
+  return fix.position && leeway::has_white_error(fix.position->R_e_m2.trace());
 }
 
 }  // namespace
@@ -70,8 +67,8 @@ Verdict NavigatorState::use(const GnssFix& fix) {
 }
 
 void NavigatorState::watch_course(const GnssFix& fix) {
-  const bool tells = limits_of(config_.vehicle.kind).goes_where_it_points && C_bs_ &&
-                     bank_->collapsed();
+  const bool tells =
+      limits_of(config_.vehicle.kind).goes_where_it_points && C_bs_ && bank_->collapsed();
   if (!tells || !fix.velocity || last_update_.outcome != UpdateOutcome::Outcome::kFused) return;
   if (!course_.push(fix, bank_->best())) return;
   contradicted_ = fix.time;
@@ -82,9 +79,9 @@ void NavigatorState::watch_course(const GnssFix& fix) {
 // is in doubt just now.
 void NavigatorState::watch_coasting() {
   constexpr double kInDoubt = 1.5;
-  const bool is_sound = bank_->collapsed() && !gate_recovery_.is_row() && !aiding_.at_rest() &&
-                        bank_->best().inertial().noise_scale() <
-                            kInDoubt * std::max(1.0, coast_.imu_sigma_scale());
+  const bool is_sound =
+      bank_->collapsed() && !gate_recovery_.is_row() && !aiding_.at_rest() &&
+      bank_->best().inertial().noise_scale() < kInDoubt * std::max(1.0, coast_.imu_sigma_scale());
   if (!is_sound) return coast_.restart();
   if (!coast_.compare(bank_->best())) return;
   contradicted_ = bank_->best().estimate().nav.time;
@@ -111,9 +108,8 @@ UpdateOutcome NavigatorState::update(Ekf& filter, const GnssFix& fix) const {
   // A part that agrees with whatever it is compared with proves nothing.
   constexpr double kKnown = 10.0;  // variance of the filter, times the receiver's
   const bool is_known =
-      by_velocity
-          ? P.block<3, 3>(kDv, kDv).trace() < kKnown * part.velocity->R_e_m2ps2.trace()
-          : P.block<3, 3>(kDr, kDr).trace() < kKnown * part.position->R_e_m2.trace();
+      by_velocity ? P.block<3, 3>(kDv, kDv).trace() < kKnown * part.velocity->R_e_m2ps2.trace()
+                  : P.block<3, 3>(kDr, kDr).trace() < kKnown * part.position->R_e_m2.trace();
   if (!is_known) return outcome;
   outcome.fused_in_part = filter.update(part, trust).outcome == UpdateOutcome::Outcome::kFused;
   return outcome;

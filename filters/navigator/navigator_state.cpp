@@ -150,15 +150,9 @@ Verdict NavigatorState::take(const R& reading) {
   return update.outcome == UpdateOutcome::Outcome::kFused ? Verdict::kFused : Verdict::kGated;
 }
 
-// At constant velocity as at rest the specific force is along gravity: neither heading nor the
-// gyro's bias about the vertical shows. What a turn has shown takes a few fixes to be read.
 bool NavigatorState::motion_hides_heading(Time t) const {
-  if (aiding_.at_rest()) return true;
-  constexpr double kReadS = 10.0;
-  constexpr double kReadFixes = 3.0;
-  const double fix_interval_s = to_seconds(t - last_fused_.value_or(t));
-  return !config_.vehicle.non_holonomic &&
-         aiding_.even_motion_s() > std::max(kReadS, kReadFixes * fix_interval_s);
+  return leeway::motion_hides_heading(config_.vehicle, aiding_.at_rest(), aiding_.even_motion_s(),
+                                      to_seconds(t - last_fused_.value_or(t)));
 }
 
 bool NavigatorState::moves() const {
@@ -170,8 +164,8 @@ bool NavigatorState::moves() const {
 }
 
 // The IMU may be right again, or it was the attitude that was wrong: where the IMU is taken for a
-// far noisier one than it is, a second start is weighed against the filter. One from fixes far apart
-// is a guess: the tilt of some degrees that it leaves is 10 m after 5 s.
+// far noisier one than it is, a second start is weighed against the filter. One from fixes far
+// apart is a guess: the tilt of some degrees that it leaves is 10 m after 5 s.
 void NavigatorState::start_beside(const GnssFix& fix, double fix_interval_s) {
   constexpr double kDoubtedScale = 4.0;
   constexpr double kBrokenScale = 100.0;  // no other attitude would mend it

@@ -71,8 +71,7 @@ void VehicleAiding::rest(const ImuBlock& block, HeadingBank& bank) const {
     });
   }
   if (config_.zero_angular_rate) {
-    const double noise = gyro_noise_rad_per_sqrt_s_ / std::sqrt(block.dt_s);
-    const double sigma = std::hypot(noise, config_.rest_turn_sigma_radps);
+    const double sigma = rest_turn_sigma_radps(config_, gyro_noise_rad_per_sqrt_s_, block.dt_s);
     bank.update([&](Ekf& filter) {
       return filter.update(zero_angular_rate(filter.estimate(), block.mean_omega_ib_b_radps, sigma),
                            rest_hides_heading(filter) ? Held::kHeading : Held::kNothing);
@@ -87,24 +86,23 @@ double VehicleAiding::roll(const ImuBlock& block, HeadingBank& bank) const {
   if (!config_.non_holonomic || !best.vehicle()) return 1.0;
   const double speed_mps = best.estimate().nav.v_e_mps.norm();
   if (speed_mps < config_.min_speed_mps) return 1.0;
-  const double turn_radps =
-      (block.mean_omega_ib_b_radps - best.estimate().bias.b_g_radps).norm();
-  double right_mps = std::hypot(config_.right_sigma_mps, config_.right_sigma_m * turn_radps);
+  const double turn_radps = (block.mean_omega_ib_b_radps - best.estimate().bias.b_g_radps).norm();
+  double right_mps = right_sigma_mps(config_, turn_radps);
   if (!bank.collapsed()) {
     right_mps = std::hypot(right_mps, kOpenHeadingRightMps + kOpenHeadingRightM * turn_radps);
   }
   const auto constraint = [&](const Ekf& filter) {
     return non_holonomic(filter.estimate(), filter.vehicle()->value,
                          filter.inertial().omega_ib_b_radps(), right_mps,
-                         config_.down_sigma_m2ps2 / speed_mps);
+                         down_sigma_mps(config_, speed_mps));
   };
   const double heading_mps =
-      speed_mps * std::hypot(heading_sigma_rad(best),
-                             std::sqrt(best.vehicle()->P(kMountYaw, kMountYaw)));
+      speed_mps *
+      std::hypot(heading_sigma_rad(best), std::sqrt(best.vehicle()->P(kMountYaw, kMountYaw)));
   const double velocity_mps = std::sqrt(best.kernel().matrix().diagonal().segment<3>(kDv).sum());
-  const double nis = std::pow(constraint(best).innovation(0), 2) /
-                     (right_mps * right_mps + heading_mps * heading_mps +
-                      velocity_mps * velocity_mps);
+  const double nis =
+      std::pow(constraint(best).innovation(0), 2) /
+      (right_mps * right_mps + heading_mps * heading_mps + velocity_mps * velocity_mps);
   bank.update([&](Ekf& filter) { return filter.update(constraint(filter)); });
   return nis;
 }

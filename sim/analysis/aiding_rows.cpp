@@ -8,8 +8,8 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kBlockS = 0.5;     // of the navigator's constraints
-constexpr double kToRestS = 1.0;    // two blocks
+constexpr double kBlockS = ImuBlocks::kBlockS;
+constexpr double kToRestS = 2.0 * kBlockS;  // as StandstillDetector
 constexpr double kStillMps = 1e-3;
 constexpr double kEvenMps2 = 0.05;  // of gravity, the tilt of a level that is known to 0.3 deg
 constexpr double kEndSlack = 1e-6;  // of a step
@@ -32,7 +32,9 @@ SceneAiding::SceneAiding(const Scene& scene, double step_s) : step_s_(step_s) {
     if (!is_still) still_s = 0.0;
     even_s = is_even ? even_s + step_s : 0.0;
     v_e_mps = truth.nav.v_e_mps;
-    samples_.push_back({{truth.nav, {}}, still_s >= kToRestS, static_cast<float>(even_s),
+    samples_.push_back({{truth.nav, {}},
+                        still_s >= kToRestS,
+                        static_cast<float>(even_s),
                         static_cast<std::uint32_t>(rows_.size())});
     if (k > 0 && scene.vehicle) add_rows(scene, truth);
   }
@@ -81,17 +83,16 @@ void SceneAiding::add_constraints(const Scene& scene, const TruthPoint& truth) {
           Held::kHeadingAndTurn);
     }
     if (config.zero_angular_rate) {
-      const double noise_radps = scene.filter.imu.gyro.noise_density / std::sqrt(kBlockS);
-      const double sigma_radps = std::hypot(noise_radps, config.rest_turn_sigma_radps);
+      const double sigma_radps =
+          rest_turn_sigma_radps(config, scene.filter.imu.gyro.noise_density, kBlockS);
       add(kRateRow, zero_angular_rate(estimate, truth.omega_ib_b_radps, sigma_radps), kBlockS, 1.0,
           Held::kHeading);
     }
   } else if (config.non_holonomic && speed_mps >= config.min_speed_mps) {
-    const double right_mps = std::hypot(config.right_sigma_mps,
-                                        config.right_sigma_m * truth.omega_ib_b_radps.norm());
+    const Eigen::Vector3d& omega = truth.omega_ib_b_radps;
     add(kExactRow,
-        non_holonomic(estimate, believed_, truth.omega_ib_b_radps, right_mps,
-                      config.down_sigma_m2ps2 / speed_mps),
+        non_holonomic(estimate, believed_, omega, right_sigma_mps(config, omega.norm()),
+                      down_sigma_mps(config, speed_mps)),
         kBlockS, 1.0, Held::kNothing);
   }
 }
@@ -103,8 +104,8 @@ void SceneAiding::add_sensors(const Scene& scene, const TruthPoint& truth) {
     if (!sensor) return;
     auto& [time, value, sigma] = reading;
     sigma = sensor->sigma;
-    add(kind, measurement(reading, estimate, believed_, truth.omega_ib_b_radps),
-        sensor->interval_s, sensor->interval_s, Held::kNothing);
+    add(kind, measurement(reading, estimate, believed_, truth.omega_ib_b_radps), sensor->interval_s,
+        sensor->interval_s, Held::kNothing);
   };
   add_sensor(scene.vehicle->odometer, kOdometerRow, OdometerSpeed{});
   add_sensor(scene.vehicle->barometer, kBarometerRow, BarometricHeight{});

@@ -1,6 +1,6 @@
 /// @file
-/// What the vehicle itself tells over a step of a scene, as linear analyses take it: the rows of its
-/// constraints and sensors in units of what the filter takes for their noise.
+/// What the vehicle itself tells over a step of a scene, as linear analyses take it: the rows of
+/// its constraints and sensors in units of what the filter takes for their noise.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct AidingRow {
 };
 
 /// The vehicle aiding of a scene's navigator, without noise in its decisions: where the truth rests
-/// the vehicle is at rest. Sampled once, at the ends of steps. Measurements of a step count as one at
-/// its end, with the noise of their mean.
+/// the vehicle is at rest. Sampled once, at the ends of steps. Measurements of a step count as one
+/// at its end, with the noise of their mean.
 class SceneAiding {
  public:
   SceneAiding(const Scene& scene, double step_s);

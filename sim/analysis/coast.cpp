@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "leeway/model/error_metric.hpp"
 
@@ -47,22 +48,33 @@ Coast coast_of(const Scene& scene, const ErrorTrack& track, const Outage& outage
     return allowed.after_m(distance_gone_m(scene, track, fix_s, t_s));
   };
   coast.end_allowed_m = allowed_at_m(coast.end_s);
+  const auto error_at_m = [&](const CovariancePoint& point) {
+    const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
+    return error_by_metric_m(scene, track, point.t_s, P_n_m2);
+  };
+  std::optional<CovariancePoint> last;  // not beyond the start of the outage
   double before_s = outage.start_s;
   double before_m = 0.0;
   follow(with_endless(scene, outage), track, [&](const CovariancePoint& point) {
-    const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
-    const double error_m = error_by_metric_m(scene, track, point.t_s, P_n_m2);
-    if (point.t_s > outage.start_s) {
-      const auto part_of = [&](double t_s) { return (t_s - before_s) / (point.t_s - before_s); };
-      if (before_s < coast.end_s && point.t_s >= coast.end_s) {
-        coast.end_error_m = std::lerp(before_m, error_m, part_of(coast.end_s));
-      }
-      const double beyond_m = error_m - allowed_at_m(point.t_s);
-      if (std::isnan(coast.coast_s) && beyond_m > 0.0) {
-        const double left_m = std::max(allowed_at_m(before_s) - before_m, 0.0);
-        const double part = left_m / (left_m + beyond_m);
-        coast.coast_s = std::lerp(before_s, point.t_s, part) - outage.start_s;
-      }
+    if (point.t_s <= outage.start_s) {
+      last = point;
+      return;
+    }
+    if (last) {
+      before_s = last->t_s;
+      before_m = error_at_m(*last);
+      last.reset();
+    }
+    const double error_m = error_at_m(point);
+    const auto part_of = [&](double t_s) { return (t_s - before_s) / (point.t_s - before_s); };
+    if (before_s < coast.end_s && point.t_s >= coast.end_s) {
+      coast.end_error_m = std::lerp(before_m, error_m, part_of(coast.end_s));
+    }
+    const double beyond_m = error_m - allowed_at_m(point.t_s);
+    if (std::isnan(coast.coast_s) && beyond_m > 0.0) {
+      const double left_m = std::max(allowed_at_m(before_s) - before_m, 0.0);
+      const double part = left_m / (left_m + beyond_m);
+      coast.coast_s = std::lerp(before_s, point.t_s, part) - outage.start_s;
     }
     before_s = point.t_s;
     before_m = error_m;

@@ -27,17 +27,11 @@ using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then t
 constexpr double kSettledRelative = 1e-3;
 constexpr double kSamePhase = 1e-6;
 
-// As the navigator's motion_hides_heading().
-constexpr double kEvenS = 10.0;
-constexpr double kEvenFixes = 3.0;
-
 /// A navigator takes positions as good as carrier phase gives them for white.
 double believed_correlation_s(const Scene& scene) {
-  constexpr double kFixedM = 0.05;
-  const double variance_m2 = fix_variance(scene.gnss.errors).head<3>().sum();
-  const bool is_fixed = variance_m2 < 3.0 * kFixedM * kFixedM;
-  const bool is_navigator = scene.estimator == SceneEstimator::kNavigator;
-  return is_navigator && is_fixed ? 0.0 : scene.filter.gnss_correlation_s;
+  const bool is_white = scene.estimator == SceneEstimator::kNavigator &&
+                        has_white_error(fix_variance(scene.gnss.errors).head<3>().sum());
+  return is_white ? 0.0 : scene.filter.gnss_correlation_s;
 }
 
 /// The extremes of a stretch of the scene, to be compared with those of the next.
@@ -47,7 +41,7 @@ struct Window {
 };
 
 /// What the fixes that count add up to.
-struct Score {
+struct FixSums {
   int fixes{0};
   Eigen::Vector3d claimed_sum_n_m2{Eigen::Vector3d::Zero()};
   Eigen::Vector3d true_sum_n_m2{Eigen::Vector3d::Zero()};
@@ -240,13 +234,14 @@ class Analysis {
     previous_.reset();
   }
 
-  /// What the navigator does not let a fix tell: the heading at rest, or after a while of even motion.
+  /// What the navigator does not let a fix tell: the heading at rest, or after a while of even
+  /// motion.
   Held held_at(double since_s) const {
     const SceneAiding* aiding = track_.aiding().get();
     if (scene_.estimator != SceneEstimator::kNavigator || !aiding) return Held::kNothing;
-    const bool rolls = scene_.vehicle && scene_.vehicle->config.non_holonomic;
-    const double even_s = std::max(kEvenS, kEvenFixes * since_s);
-    const bool hides = aiding->rests(now_s_) || (!rolls && aiding->even_s(now_s_) > even_s);
+    const VehicleConfig vehicle = scene_.vehicle ? scene_.vehicle->config : VehicleConfig{};
+    const bool hides =
+        motion_hides_heading(vehicle, aiding->rests(now_s_), aiding->even_s(now_s_), since_s);
     return hides && pair_.heading_is_hidden(now_s_) ? Held::kHeadingAndTurn : Held::kNothing;
   }
 
@@ -264,10 +259,21 @@ class Analysis {
   bool has_tried_to_repeat_{false};
   std::size_t fixes_{0};
   Window window_{};
-  Score score_{};
+  FixSums score_{};
   std::optional<Variances> previous_{};
   std::optional<double> settled_s_{};
 };
+
+/// Calls f with the analysis that fits what the scene's filter estimates.
+/// @param stretches  null: every leg is taken
+template <class F>
+auto with_analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config,
+                   Stretches* stretches, F&& f) {
+  validate(scene);
+  const bool has_parameters = scene.vehicle && scene.vehicle->config.uses_parameters();
+  if (has_parameters) return f(Analysis<kVehicleStates>(scene, track, config, stretches));
+  return f(Analysis<0>(scene, track, config, stretches));
+}
 
 }  // namespace
 
@@ -289,37 +295,22 @@ void free_inertial(const Scene& scene, const ErrorTrack& track,
   } while (observer(point) && point.t_s < scene.duration_s);
 }
 
-namespace {
-
-/// Calls f with the analysis that fits what the scene's filter estimates.
-template <class F>
-auto with_analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config,
-                   F&& f) {
-  validate(scene);
-  const bool has_parameters = scene.vehicle && scene.vehicle->config.uses_parameters();
-  if (has_parameters) return f(Analysis<kVehicleStates>(scene, track, config));
-  return f(Analysis<0>(scene, track, config));
-}
-
-}  // namespace
-
 void follow(const Scene& scene, const ErrorTrack& track,
             const std::function<void(const CovariancePoint&)>& observer) {
   CovarianceConfig config;
   config.observer = observer;
-  with_analysis(scene, track, config, [](auto analysis) { analysis.walk(); });
+  with_analysis(scene, track, config, nullptr, [](auto analysis) { analysis.walk(); });
 }
 
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
                            const CovarianceConfig& config) {
-  return with_analysis(scene, track, config, [](auto analysis) { return analysis.run(); });
+  return with_analysis(scene, track, config, nullptr, [](auto analysis) { return analysis.run(); });
 }
 
 CovarianceAnalysis analyze_end(const Scene& scene, Stretches& stretches) {
-  const bool has_parameters = scene.vehicle && scene.vehicle->config.uses_parameters();
-  if (has_parameters) return analyze(scene, stretches.track());
-  validate(scene);
-  return Analysis<0>(scene, stretches.track(), {}, &stretches).run();
+  const CovarianceConfig config;
+  return with_analysis(scene, stretches.track(), config, &stretches,
+                       [](auto analysis) { return analysis.run(); });
 }
 
 }  // namespace leeway::sim

@@ -23,9 +23,9 @@ void validate(const Scene& scene, const std::vector<AllowedError>& limits,
     require("interval", "limit_m", allowed.limit_m, positive_to(1e6));
     require("interval", "share", allowed.share, between(0.0, 1.0));
   }
-  const double half_s = std::nextafter(0.5 * scene.duration_s, 0.0);
-  require("interval", "shortest_s, below half the scene's duration,", config.shortest_s,
-          between(0.01, half_s));
+  const double below_longest_s = std::nextafter(longest_interval_s(scene), 0.0);
+  require("interval", "shortest_s, below the longest that the scene can be asked for,",
+          config.shortest_s, between(0.01, below_longest_s));
   require("interval", "tolerance", config.tolerance, between(1e-6, 0.1));
 }
 
@@ -53,7 +53,7 @@ class Solver {
         config_(config),
         track_(error_track(scene, config.covariance_step_s)),
         stretches_(scene_, track_),
-        log_longest_(std::log(0.5 * scene.duration_s)) {}
+        log_longest_(std::log(longest_interval_s(scene))) {}
 
   Interval solve(const AllowedError& allowed) {
     Interval answer;
@@ -69,7 +69,8 @@ class Solver {
     const double log_interval = answer.outcome == Interval::Outcome::kAlways
                                     ? log_longest_
                                     : narrow(below, above, allowed).log_interval;
-    answer.interval_s = std::exp(log_interval);
+    // No longer by rounding, which trials would refuse.
+    answer.interval_s = std::min(std::exp(log_interval), longest_interval_s(scene_));
     report(answer, log_interval);
     return answer;
   }
@@ -78,8 +79,7 @@ class Solver {
     ErrorBeforeFix before;
     double before_s = 0.0;
     free_inertial(scene_, track_, [&](const CovariancePoint& point) {
-      const Eigen::Matrix3d P_n_m2 =
-          ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
+      const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
       const ErrorBeforeFix now = error_before_fix(scene_, track_, 0.0, point.t_s, P_n_m2);
       if (config_.free_inertial_observer) config_.free_inertial_observer(point.t_s, now.error_m);
       bool wanted = false;

@@ -12,8 +12,8 @@
 #include "leeway/model/process_noise.hpp"
 #include "leeway/sensors/imu_error_model.hpp"
 #include "leeway/sim/analysis/error_track.hpp"
-#include "sim/analysis/fix_rows.hpp"
 #include "sim/analysis/doubling/stretch.hpp"
+#include "sim/analysis/fix_rows.hpp"
 
 namespace leeway::sim {
 
@@ -26,7 +26,8 @@ inline constexpr int kErrorsOf{kErrorStates * (kFilters) + (kParameters)};
 
 /// Second moment E[x x^T] of these errors.
 template <int kFilters, int kParameters = 0>
-using ErrorMoment = Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, kErrorsOf<kFilters, kParameters>>;
+using ErrorMoment =
+    Eigen::Matrix<double, kErrorsOf<kFilters, kParameters>, kErrorsOf<kFilters, kParameters>>;
 
 /// Gains of each filter on the rows of a fix.
 template <int kFilters, int kParameters = 0>

@@ -67,8 +67,7 @@ class TruthModel {
   bool takes_stretches() const {
     using Source = MarkovSource<kFilters, kParameters>;
     const auto enters_by_fixes = [](const Source& p) { return p.enters_at == Source::kFixes; };
-    return !by_source_ &&
-           std::ranges::all_of(sources_.front().second.processes(), enters_by_fixes);
+    return !by_source_ && std::ranges::all_of(sources_.front().second.processes(), enters_by_fixes);
   }
 
   /// What RiccatiMap carries, all sources in one. @pre takes_stretches()
@@ -174,7 +173,8 @@ class TruthModel {
               of_triad(ErrorSource::kAccelerometerDrift, ErrorSource::kGyroDrift));
   }
 
-  void add_turn_on(const MarkovStart& turn_on, int bias_row, SourceCovariance<kFilters, kParameters>& bias) {
+  void add_turn_on(const MarkovStart& turn_on, int bias_row,
+                   SourceCovariance<kFilters, kParameters>& bias) {
     if (all_take_bias_for(std::numeric_limits<double>::infinity(), bias_row)) {
       // The states are as constant as the bias: nothing else need be remembered.
       bias.add_shared(bias_row, turn_on.error_moment());
@@ -184,7 +184,8 @@ class TruthModel {
     }
   }
 
-  void add_drift(const GaussMarkov& in_run, int bias_row, SourceCovariance<kFilters, kParameters>& drift) {
+  void add_drift(const GaussMarkov& in_run, int bias_row,
+                 SourceCovariance<kFilters, kParameters>& drift) {
     MarkovStart start;
     start.variance.setConstant(in_run.sigma * in_run.sigma);
     if (kFilters > 1 || !all_take_bias_for(in_run.tau_s, bias_row)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "leeway/sim/sensors/imu_catalogue.hpp"
+#include "leeway/sim/sensors/imu_class_name.hpp"
 #include "leeway/sim/sensors/imu_model_file.hpp"
 
 namespace leeway::cli {
@@ -108,8 +109,7 @@ NamedImu imu_named(const std::string& name, RangeEnd range) {
   if (name == kMems) return {name, automotive_mems_model()};
   const auto imu = from_name<ImuClass>(name);
   if (!imu) return part_named(name);
-  return {fmt::format("{}/{}", leeway::name(*imu), leeway::name(range)),
-          imu_class_model(*imu, range)};
+  return {sim::imu_name({*imu, range}), imu_class_model(*imu, range)};
 }
 
 }  // namespace leeway::cli

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string>
 
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/compare/pareto.hpp"
+#include "leeway/sim/tools/quantile.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "lib/earth/field_walk.hpp"
 #include "sim/compare/filter_case.hpp"
@@ -118,9 +118,8 @@ void rank(std::vector<Compared>& variants) {
   std::sort(variants.begin(), variants.end(), is_cheaper);
   std::vector<ParetoPoint> points;
   for (const Compared& c : variants) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     points.push_back({c.cost.median_ns_per_s, c.cost.least_ns_per_s, c.cost.most_ns_per_s,
-                      is_lost(c) ? kNone : c.accuracy.figures.rms_horizontal_m});
+                      is_lost(c) ? std::nan("") : c.accuracy.figures.rms_horizontal_m});
   }
   const auto dominated_by = dominators(points);
   for (std::size_t v = 0; v < variants.size(); ++v) {
@@ -139,14 +138,6 @@ std::function<void(double)> part(const CompareOptions& options, double from, dou
 }  // namespace
 
 double r95_of(std::vector<double> values) { return quantile_of(std::move(values), 0.95); }
-
-double quantile_of(std::vector<double> values, double probability) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto count = static_cast<double>(values.size());
-  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(probability * count) - 1.0);
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 Consistency consistency_of(const Accuracy& accuracy) {
   const CampaignResult& r = accuracy.figures;

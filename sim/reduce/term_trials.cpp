@@ -3,19 +3,19 @@
 #include <utility>
 
 #include "leeway/model/error_metric.hpp"
+#include "leeway/sim/tools/quantile.hpp"
 #include "sim/reduce/reduction_parts.hpp"
 
 namespace leeway::sim {
 namespace {
 
-/// What f makes of the errors of the trials that are finite, north, east, down, and of the course.
-template <class F>
-std::vector<double> sizes_m(const std::vector<CaseRun>& runs, F&& f) {
+/// Sizes by the metric of the errors of the trials that are finite.
+std::vector<double> sizes_m(ErrorMetric metric, const std::vector<CaseRun>& runs) {
   std::vector<double> sizes;
   for (const CaseRun& run : runs) {
     if (!run.score.finite) continue;
     for (std::size_t i = 0; i < run.error_n_m.size(); ++i) {
-      sizes.push_back(std::abs(f(run.error_n_m[i], run.course_rad[i])));
+      sizes.push_back(size_of_error_m(metric, run.error_n_m[i], run.course_rad[i]));
     }
   }
   return sizes;
@@ -34,31 +34,9 @@ Eigen::Matrix3d second_moment_m2(const std::vector<CaseRun>& runs) {
 }
 
 double empirical_error_m(ErrorMetric metric, const std::vector<CaseRun>& runs) {
-  using Error = Eigen::Vector3d;
-  switch (metric) {
-    case ErrorMetric::kCross95:
-      return quantile_of(sizes_m(runs,
-                                 [](const Error& e, double course_rad) {
-                                   return e.y() * std::cos(course_rad) -
-                                          e.x() * std::sin(course_rad);
-                                 }),
-                         0.95);
-    case ErrorMetric::kAlong95:
-      return quantile_of(sizes_m(runs,
-                                 [](const Error& e, double course_rad) {
-                                   return e.x() * std::cos(course_rad) +
-                                          e.y() * std::sin(course_rad);
-                                 }),
-                         0.95);
-    case ErrorMetric::kVertical95:
-      return quantile_of(sizes_m(runs, [](const Error& e, double) { return e.z(); }), 0.95);
-    case ErrorMetric::kDrms:
-    case ErrorMetric::kAxis:
-    case ErrorMetric::k3d:
-      return error_size_m(metric, second_moment_m2(runs), 0.0);
-    default:
-      return quantile_of(radial_errors_m(runs), radius_probability(metric));
-  }
+  const double probability = quantile_probability(metric);
+  if (probability > 0.0) return quantile_of(sizes_m(metric, runs), probability);
+  return error_size_m(metric, second_moment_m2(runs), 0.0);
 }
 
 double difference_m(const std::vector<CaseRun>& runs, const std::vector<CaseRun>& others) {

@@ -105,8 +105,8 @@ AllowedError allowed_error(std::string_view text) {
                     text));
   }
   if (!kLimitM.contains(allowed->limit_m)) {
-    throw Error(
-        fmt::format("'{}': a limit of {:.9g} m {}", text, allowed->limit_m, kLimitM.text()));
+    throw Error(fmt::format("'{}': a limit of {:.9g} m must be {} m", text, allowed->limit_m,
+                            kLimitM.text()));
   }
   if (!kLimitShare.contains(allowed->share)) {
     throw Error(fmt::format("'{}': a share of {:.9g} % must be 0 or 0.0001 to 100 %", text,

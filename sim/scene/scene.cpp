@@ -62,6 +62,12 @@ double scored_part_s(const Scene& scene) {
   return scene.duration_s - gnss.settle_s - gnss.latency_s - 0.5 * gnss.interval_s;
 }
 
+double longest_interval_s(const Scene& scene) {
+  constexpr double kRounding = 1e-9;  // of times that are sums
+  const double settled_s = scene.duration_s - scene.gnss.settle_s - scene.gnss.latency_s;
+  return std::min(0.5 * scene.duration_s, (1.0 - kRounding) * settled_s);
+}
+
 NavigatorConfig navigator_config(const Scene& scene) {
   NavigatorConfig config;
   config.filter = scene.filter;

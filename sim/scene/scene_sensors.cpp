@@ -3,6 +3,7 @@
 #include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/bias_model.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
+#include "leeway/sim/sensors/imu_class_name.hpp"
 #include "leeway/sim/sensors/imu_model_file.hpp"
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
@@ -60,7 +61,7 @@ NamedImuModel read_class(TomlSection& section, const std::string& wanted) {
     section.fail_unknown_word("class", wanted, classes);
   }
   const RangeEnd end = range.value_or(RangeEnd::kMid);
-  return {fmt::format("{}/{}", name(*imu), name(end)), imu_class_model(*imu, end)};
+  return {imu_name({*imu, end}), imu_class_model(*imu, end)};
 }
 
 NamedImuModel read_part(const TomlSection& section, const std::string& wanted) {

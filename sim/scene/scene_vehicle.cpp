@@ -1,6 +1,5 @@
 #include "leeway/sim/scene/scene_vehicle.hpp"
 
-
 #include "sim/scene/scene_sections.hpp"
 #include "sim/scene/scene_units.hpp"
 
@@ -59,14 +58,14 @@ SceneVehicle read_vehicle(TomlSection& section) {
   SceneVehicle vehicle = scene_vehicle(section.required(section.choice<VehicleKind>("kind")));
   VehicleConfig& config = vehicle.config;
   read_constraints(section, config);
-  vehicle.odometer =
-      read_sensor(section, "odometer", kSpeedNoise, kUsualOdometer, [&config](TomlSection& odometer) {
-        set(odometer, kScaleSigma, config.odometer_scale_sigma);
-      });
-  vehicle.barometer =
-      read_sensor(section, "barometer", kHeightNoise, kUsualBarometer, [&config](TomlSection& barometer) {
-        set(barometer, kOffsetSigma, config.height_offset_sigma_m);
-      });
+  vehicle.odometer = read_sensor(section, "odometer", kSpeedNoise, kUsualOdometer,
+                                 [&config](TomlSection& odometer) {
+                                   set(odometer, kScaleSigma, config.odometer_scale_sigma);
+                                 });
+  vehicle.barometer = read_sensor(section, "barometer", kHeightNoise, kUsualBarometer,
+                                  [&config](TomlSection& barometer) {
+                                    set(barometer, kOffsetSigma, config.height_offset_sigma_m);
+                                  });
   vehicle.heading =
       read_sensor(section, "heading", kHeadingNoise, kUsualHeading, [](TomlSection&) {});
   config.odometer = vehicle.odometer.has_value();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "leeway/model/chi_square.hpp"
 #include "leeway/model/error_metric.hpp"
+#include "leeway/sim/tools/quantile.hpp"
 #include "leeway/sim/trials/trial.hpp"
 #include "sim/trials/campaign_sums.hpp"
 #include "sim/trials/shared_trials.hpp"
@@ -61,24 +63,6 @@ double rms_over_linear(const std::vector<SharedTrial>& trials, std::size_t witho
   return std::sqrt(sum_m2 / epochs) / linear.true_rms_n_m.head(axes).norm();
 }
 
-/// The probability that a metric is the quantile of; 0 of a root mean square.
-double probability_of(ErrorMetric metric) {
-  const bool is_of_an_axis = asks_for_course(metric) || metric == ErrorMetric::kVertical95;
-  return is_of_an_axis ? 0.95 : radius_probability(metric);
-}
-
-/// What a metric that is a quantile is one of.
-double size_of_error_m(ErrorMetric metric, const Eigen::Vector3d& error_n_m, double course_rad) {
-  if (!error_n_m.allFinite()) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector2d along(std::cos(course_rad), std::sin(course_rad));
-  if (metric == ErrorMetric::kAlong95) return std::abs(along.dot(error_n_m.head<2>()));
-  if (metric == ErrorMetric::kCross95) {
-    return std::abs(along.x() * error_n_m.y() - along.y() * error_n_m.x());
-  }
-  if (metric == ErrorMetric::kVertical95) return std::abs(error_n_m.z());
-  return error_n_m.head<2>().norm();
-}
-
 double quantile_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
                             double probability) {
   std::vector<double> all;
@@ -86,10 +70,7 @@ double quantile_over_linear(const std::vector<SharedTrial>& trials, std::size_t 
     if (k == without) continue;
     all.insert(all.end(), trials[k].of_fixes.begin(), trials[k].of_fixes.end());
   }
-  if (all.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = static_cast<std::ptrdiff_t>(probability * static_cast<double>(all.size()));
-  std::nth_element(all.begin(), all.begin() + at, all.end());
-  return all[static_cast<std::size_t>(at)];
+  return quantile_of(std::move(all), probability);
 }
 
 /// Trials at one interval, beside the linear analysis of the same fixes.
@@ -120,7 +101,7 @@ TrialRun summed(const std::vector<SharedTrial>& trials, const CovarianceAnalysis
   run.campaign = result_of(sums);
   const std::size_t n = trials.size();
   const auto ratio = [&](std::size_t without) {
-    const double probability = probability_of(metric);
+    const double probability = quantile_probability(metric);
     if (probability > 0.0) return quantile_over_linear(trials, without, probability);
     return rms_over_linear(trials, without, linear, metric == ErrorMetric::k3d ? 3 : 2);
   };
@@ -132,6 +113,13 @@ TrialRun summed(const std::vector<SharedTrial>& trials, const CovarianceAnalysis
   run.scatter = std::sqrt((count - 1.0) / count * sum_sq) / run.error_over_true;
   return run;
 }
+
+/// The trials at one interval, as many as have been run.
+struct IntervalTrials {
+  LinearRun linear{};
+  TrialPlan plan;
+  std::vector<SharedTrial> trials{};
+};
 
 class Confirmer {
  public:
@@ -147,11 +135,12 @@ class Confirmer {
   Confirmation check(const Interval& answer) {
     scene_.limit.allow(answer.allowed());
     scene_.trials = kFewestTrials;
-    TrialRun first = run(answer.interval_s);
+    IntervalTrials trials = planned(answer.interval_s);
+    TrialRun first = run_all(trials);
     while (!first.diverges() && std::abs(first.excess_sigmas()) < kClearSigmas &&
            scene_.trials < kMostTrials) {
       scene_.trials *= 2;
-      first = run(answer.interval_s);
+      first = run_all(trials);
     }
     return judged(answer, first);
   }
@@ -174,20 +163,35 @@ class Confirmer {
     return c;
   }
 
-  TrialRun run(double interval_s) {
+  IntervalTrials planned(double interval_s) {
     scene_.gnss.interval_s = interval_s;
-    const LinearRun linear = linear_run(scene_, track_);
-    const TrialPlan plan(scene_, linear.analysis.window_s);
+    LinearRun linear = linear_run(scene_, track_);
+    const double scored_s = linear.analysis.window_s;
+    return {std::move(linear), TrialPlan(scene_, scored_s)};
+  }
+
+  /// Runs those of the scene's trials that have not been run, and takes all.
+  TrialRun run_all(IntervalTrials& at) {
     const auto over_linear = [&](std::size_t k, const TrialEpoch& epoch) -> std::optional<double> {
-      if (k >= linear.errors_m.size() || !plan.fixes()[k].scored) return {};
-      return size_m(epoch) / linear.errors_m[k];
+      if (k >= at.linear.errors_m.size() || !at.plan.fixes()[k].scored) return {};
+      return size_m(epoch) / at.linear.errors_m[k];
     };
-    trials_run_ += scene_.trials;
-    return summed(shared_trials(plan, over_linear, ranks_, progress_), linear.analysis,
-                  scene_.limit.metric);
+    const std::uint64_t done = at.trials.size();
+    const SeedRange rest{scene_.first_seed + done,
+                         static_cast<std::uint64_t>(scene_.trials) - done};
+    std::ranges::move(shared_trials(at.plan, rest, over_linear, ranks_, progress_),
+                      std::back_inserter(at.trials));
+    trials_run_ += static_cast<int>(rest.count);
+    return summed(at.trials, at.linear.analysis, scene_.limit.metric);
+  }
+
+  TrialRun run(double interval_s) {
+    IntervalTrials trials = planned(interval_s);
+    return run_all(trials);
   }
 
   double size_m(const TrialEpoch& epoch) const {
+    if (!epoch.error_n_m.allFinite()) return std::numeric_limits<double>::infinity();
     const ErrorMetric metric = scene_.limit.metric;
     const double course_rad = asks_for_course(metric) ? track_.path().course_rad(epoch.t_s) : 0.0;
     return size_of_error_m(metric, epoch.error_n_m, course_rad);
@@ -208,7 +212,7 @@ class Confirmer {
       // Of an error that is that of lost filters no secant can be drawn.
       double next = log_s - (diverges ? std::log(2.0) : std::clamp(excess / slope, -1.5, 1.5));
       if (kept && lost && !(next > *kept && next < *lost)) next = 0.5 * (*kept + *lost);
-      if (std::exp(next) > 0.5 * scene_.duration_s) break;
+      if (std::exp(next) > longest_interval_s(scene_)) break;
       here = run(std::exp(next));
       const double moved = here.excess() - excess;
       slope = diverges ? 1.0 : std::clamp(moved / (next - log_s), 0.3, 5.0);

@@ -42,15 +42,14 @@ void require_same_scene(std::uint64_t fingerprint, const Ranks& ranks) {
                     1);
 }
 
-std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fix,
-                                       const Ranks& ranks,
+std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const SeedRange& seeds,
+                                       const OfFix& of_fix, const Ranks& ranks,
                                        const std::function<void(double)>& progress, int threads) {
   require_same_scene(fingerprint(plan), ranks);
-  const Scene& scene = plan.scene();
   const auto run = [&](std::size_t k) {
     SharedTrial trial;
     std::size_t fix = 0;
-    trial.score = run_trial(plan, scene.first_seed + k, [&](const TrialEpoch& epoch) {
+    trial.score = run_trial(plan, seeds.first + k, [&](const TrialEpoch& epoch) {
       if (const std::optional<double> value = of_fix(fix++, epoch)) {
         trial.of_fixes.push_back(*value);
       }
@@ -59,7 +58,7 @@ std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fi
   };
   std::vector<SharedTrial> trials;
   for (const std::string& bytes :
-       shared_work(static_cast<std::size_t>(scene.trials), run, ranks, progress, threads)) {
+       shared_work(static_cast<std::size_t>(seeds.count), run, ranks, progress, threads)) {
     trials.push_back(shared_trial_of(bytes));
   }
   return trials;

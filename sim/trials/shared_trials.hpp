@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "leeway/sim/tools/ranks.hpp"
+#include "leeway/sim/trials/seed_range.hpp"
 #include "leeway/sim/trials/trial.hpp"
 
 namespace leeway::sim {
@@ -22,13 +23,13 @@ struct SharedTrial {
 /// The number that a trial leaves of what stands just before fix k of its plan; nothing: none.
 using OfFix = std::function<std::optional<double>(std::size_t k, const TrialEpoch& epoch)>;
 
-/// The trials of the plan's scene, in the order of their seeds, on every rank; to the bit the same
+/// The trials of the plan with these seeds, in their order, on every rank; to the bit the same
 /// on any number of them. All ranks must call it with the same plan.
 /// @param progress  called from the calling thread with the fraction done of this rank's part
 /// @throws Error of a trial, the same on every rank; RankFailure when another rank stopped, or has
 /// another scene than the first.
-std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const OfFix& of_fix,
-                                       const Ranks& ranks,
+std::vector<SharedTrial> shared_trials(const TrialPlan& plan, const SeedRange& seeds,
+                                       const OfFix& of_fix, const Ranks& ranks,
                                        const std::function<void(double)>& progress = {},
                                        int threads = 0);
 

@@ -55,6 +55,17 @@ constexpr bool asks_for_height(ErrorMetric metric) {
   return metric == ErrorMetric::kVertical95 || metric == ErrorMetric::k3d;
 }
 
+/// The probability that a metric is the quantile of; 0 of a root mean square or a sigma.
+constexpr double quantile_probability(ErrorMetric metric) {
+  const bool is_of_an_axis = asks_for_course(metric) || metric == ErrorMetric::kVertical95;
+  return is_of_an_axis ? 0.95 : radius_probability(metric);
+}
+
+/// What such a metric is the quantile of: the size in m of one error north, east, down. Of the
+/// other metrics the horizontal distance.
+/// @param course_rad  over ground, clockwise from north
+double size_of_error_m(ErrorMetric metric, const Eigen::Vector3d& error_n_m, double course_rad);
+
 /// Half width, in sigmas, of the interval that holds 95 % of a Gaussian: the quantile of 0.975.
 inline constexpr double kSigmasOf95 = 1.959963984540054;
 

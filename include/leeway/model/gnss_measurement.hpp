@@ -12,6 +12,15 @@
 
 namespace leeway {
 
+/// Whether a position is that of carrier phase with fixed ambiguities: what is left is noise and
+/// multipath of centimetres, which changes with every few metres. Errors of code last for half a
+/// minute.
+/// @param trace_m2  of its covariance
+constexpr bool has_white_error(double trace_m2) {
+  constexpr double kFixedM = 0.05;  // a quarter of the carrier's wavelength
+  return trace_m2 < 3.0 * kFixedM * kFixedM;
+}
+
 /// Where the antenna is and how fast, for an estimate.
 /// @param lever_arm_b_m     IMU to antenna, body axes
 /// @param omega_ib_b_radps  measured angular rate at the time of the fix (bias not yet removed)

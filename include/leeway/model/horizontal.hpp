@@ -11,6 +11,9 @@ namespace leeway {
 Eigen::Matrix2d horizontal_covariance(const Eigen::Vector3d& r_e_m,
                                       const Eigen::Matrix3d& P_rr_e_m2);
 
+/// Variances along the principal axes, the larger first, none below 0.
+Eigen::Vector2d principal_variances(const Eigen::Matrix2d& P);
+
 /// The radius within which a zero-mean Gaussian error stays with the given probability, in m.
 /// Relative error below 1e-9. No heap. @pre P is positive semidefinite, 0 < probability < 1.
 /// Source: the density in elliptic polar coordinates, integrated over the radius in closed form.

@@ -2,11 +2,14 @@
 /// What is known of a vehicle without asking a receiver: that it stands, that it does not slide.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "leeway/earth/fields.hpp"
 #include "leeway/model/vehicle_state.hpp"
-#include "leeway/navigator/heading_bank.hpp"
 #include "leeway/monitors/nis_cusum.hpp"
 #include "leeway/monitors/standstill.hpp"
+#include "leeway/navigator/heading_bank.hpp"
 #include "leeway/navigator/vehicle_kind.hpp"
 
 namespace leeway {
@@ -70,6 +73,34 @@ struct VehicleConfig {
         Field{"height_walk_m_per_sqrt_s", c.height_walk_m_per_sqrt_s, kNotNegative});
   }
 };
+
+/// 1 sigma of the rear axle's velocity to the right, at a rate of turn ...
+inline double right_sigma_mps(const VehicleConfig& config, double turn_radps) {
+  return std::hypot(config.right_sigma_mps, config.right_sigma_m * turn_radps);
+}
+
+/// ... and down, at a speed above 0.
+inline double down_sigma_mps(const VehicleConfig& config, double speed_mps) {
+  return config.down_sigma_m2ps2 / speed_mps;
+}
+
+/// 1 sigma of a mean rate at rest over a time, of a gyro with this density of white noise.
+inline double rest_turn_sigma_radps(const VehicleConfig& config, double gyro_noise_rad_per_sqrt_s,
+                                    double dt_s) {
+  return std::hypot(gyro_noise_rad_per_sqrt_s / std::sqrt(dt_s), config.rest_turn_sigma_radps);
+}
+
+/// Whether a fix can tell no heading. At constant velocity as at rest the specific force is along
+/// gravity: neither heading nor the gyro's bias about the vertical shows. What a turn has shown
+/// takes a few fixes to be read.
+/// @param even_s  how long the velocity has been constant
+inline bool motion_hides_heading(const VehicleConfig& config, bool at_rest, double even_s,
+                                 double fix_interval_s) {
+  constexpr double kReadS = 10.0;
+  constexpr double kReadFixes = 3.0;
+  return at_rest ||
+         (!config.non_holonomic && even_s > std::max(kReadS, kReadFixes * fix_interval_s));
+}
 
 /// @throws Error when a value is out of range.
 void validate(const VehicleConfig& config);

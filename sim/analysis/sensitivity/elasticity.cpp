@@ -15,9 +15,9 @@ constexpr double kLeastGrowth = 0.02;
 constexpr int kSlopeSteps = 2;  // to each side
 const double kSlopeStep = std::log(1.1);
 
-/// The scene at intervals on both sides of its own, the longest of them at most half the scene.
+/// The scene at intervals on both sides of its own, none longer than longest_interval_s().
 std::vector<Scene> at_other_intervals(const Scene& scene) {
-  const double log_longest = std::log(0.5 * scene.duration_s) - kSlopeSteps * kSlopeStep;
+  const double log_longest = std::log(longest_interval_s(scene)) - kSlopeSteps * kSlopeStep;
   const double log_middle = std::min(std::log(scene.gnss.interval_s), log_longest);
   std::vector<Scene> scenes(2 * kSlopeSteps + 1, scene);
   for (int i = -kSlopeSteps; i <= kSlopeSteps; ++i) {
@@ -42,8 +42,7 @@ double slope(std::span<const double> log_errors) {
 
 Elasticities elasticities(const Scene& scene, const ErrorTrack& track, double interval_s) {
   validate(scene);
-  require("elasticities", "interval_s, at most half the scene,", interval_s,
-          between(0.01, 0.5 * scene.duration_s));
+  require("elasticities", "interval_s", interval_s, between(0.01, longest_interval_s(scene)));
   Scene at = scene;
   at.gnss.interval_s = interval_s;
   const std::vector<Specification> all = specifications(at);

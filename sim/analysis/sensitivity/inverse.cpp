@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/sensors/imu_class.hpp"
 #include "leeway/sim/sensors/imu_catalogue.hpp"
+#include "leeway/sim/sensors/imu_class_name.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "lib/earth/field_walk.hpp"
 #include "sim/analysis/sensitivity/candidate_tracks.hpp"
@@ -46,8 +46,7 @@ std::vector<Scene> candidate_scenes(const Scene& scene, BiasModel class_bias) {
   };
   for (const ImuClass c : kAll<ImuClass>) {
     for (const RangeEnd end : kAll<RangeEnd>) {
-      add(std::string(name(c)) + "/" + std::string(name(end)),
-          with_bias_model(imu_class_model(c, end), class_bias));
+      add(imu_name({c, end}), with_bias_model(imu_class_model(c, end), class_bias));
     }
   }
   for (const ImuPart& part : imu_parts()) add(std::string(part.name), imu_model(part));
@@ -82,8 +81,7 @@ Scene with_factor(Scene scene, const std::vector<Specification>& what, double fa
 
 Inverse invert(const Scene& scene, double interval_s, double limit_m, const InverseConfig& config) {
   validate(scene);
-  require("inverse", "interval_s, at most half the scene,", interval_s,
-          between(0.01, 0.5 * scene.duration_s));
+  require("inverse", "interval_s", interval_s, between(0.01, longest_interval_s(scene)));
   require("inverse", "limit_m", limit_m, positive_to(1e6));
   Scene at = scene;
   at.gnss.interval_s = interval_s;

@@ -5,8 +5,6 @@
 namespace leeway::sim {
 namespace {
 
-using enum Specification;
-
 /// Calls f with the deviation of each element from the identity, on the diagonal or off it.
 template <class F>
 void each_deviation(Eigen::Matrix3d& M, bool on_diagonal, F&& f) {
@@ -24,6 +22,7 @@ void each_deviation(Eigen::Matrix3d& M, bool on_diagonal, F&& f) {
 /// @param specification  of the accelerometer, whose order the gyro's have too
 template <class F>
 void each_number(TriadErrorModel& triad, Specification specification, F&& f) {
+  using enum Specification;
   switch (specification) {
     case kAccelerometerBias:
       std::ranges::for_each(triad.bias.reshaped(), f);
@@ -47,6 +46,7 @@ void each_number(TriadErrorModel& triad, Specification specification, F&& f) {
 
 template <class F>
 void each_number(ImuErrorModel& imu, Specification specification, F&& f) {
+  using enum Specification;
   if (specification == kGyroGSensitivity) {
     std::ranges::for_each(imu.G_g_radps_per_mps2.reshaped(), f);
     f(imu.G_g_sigma_radps_per_mps2);
@@ -60,6 +60,7 @@ void each_number(ImuErrorModel& imu, Specification specification, F&& f) {
 
 template <class F>
 void each_number(SceneVehicle& vehicle, Specification specification, F&& f) {
+  using enum Specification;
   VehicleConfig& config = vehicle.config;
   if (specification == kStandstill && config.zero_velocity) f(config.rest_sigma_mps);
   if (specification == kStandstill && config.zero_angular_rate) f(config.rest_turn_sigma_radps);
@@ -84,6 +85,7 @@ void each_number(SceneVehicle& vehicle, Specification specification, F&& f) {
 /// Calls f with each number that a specification consists of.
 template <class F>
 void each_number(Scene& scene, Specification specification, F&& f) {
+  using enum Specification;
   GnssErrorModel& gnss = scene.gnss.errors;
   if (is_of_imu(specification)) {
     each_number(scene.imu, specification, f);

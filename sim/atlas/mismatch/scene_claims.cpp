@@ -8,6 +8,7 @@
 #include "leeway/model/horizontal.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "leeway/sim/tools/parallel.hpp"
+#include "leeway/sim/tools/quantile.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -100,12 +101,6 @@ std::vector<SceneTrial> run_seed(const Town& town, std::uint64_t seed) {
   return trials;
 }
 
-double quantile_95(std::vector<double> values) {
-  const auto k = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
-}
-
 /// @param trials  by seed, then vehicle and interval; of the cell-th of these
 SceneClaim summed(const std::vector<std::vector<SceneTrial>>& trials, std::size_t cell) {
   SceneClaim claim{.vehicle = kVehicles[cell / kFixIntervalsS.size()],
@@ -120,8 +115,8 @@ SceneClaim summed(const std::vector<std::vector<SceneTrial>>& trials, std::size_
     errors_m.insert(errors_m.end(), trial.errors_m.begin(), trial.errors_m.end());
     over_linear.insert(over_linear.end(), trial.over_linear.begin(), trial.over_linear.end());
   }
-  claim.r95_m = quantile_95(std::move(errors_m));
-  claim.r95_over_linear = quantile_95(std::move(over_linear));
+  claim.r95_m = quantile_of(std::move(errors_m), 0.95);
+  claim.r95_over_linear = quantile_of(std::move(over_linear), 0.95);
   return claim;
 }
 

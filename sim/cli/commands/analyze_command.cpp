@@ -6,6 +6,7 @@
 #include "sim/cli/command.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
+#include "sim/cli/tables/coast_tables.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -130,19 +131,19 @@ void print_limit(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
   for (const sim::Coast& c : coasts) {
     fmt::print("Outage of {:g} s at {:g} s: {:.3g} m at its end, {:.1f} s; keeps {}: {}\n",
                c.outage.duration_s, c.outage.start_s, c.end_error_m, c.end_s, limit,
-               c.keeps_limit() ? "yes"
-                               : fmt::format("no, for {:.1f} s only", c.coast_s));
+               c.keeps_limit() ? "yes" : fmt::format("no, for {:.1f} s only", c.coast_s));
   }
 }
 
-/// Down, without a fix, an error grows by gravity's gradient: e-fold in sqrt(R / 2 g), 570 s. Source:
-/// Groves (2013) section 5.7.2.
+/// Down, without a fix, an error grows by gravity's gradient: e-fold in sqrt(R / 2 g), 570 s.
+/// Source: Groves (2013) section 5.7.2.
 void print_vertical_channel(const sim::Scene& scene) {
   constexpr double kEfoldS = 570.0;
   const bool has_barometer = scene.vehicle && scene.vehicle->barometer;
   if (scene.gnss.interval_s < kEfoldS || has_barometer) return;
   fmt::print(
-      "Fixes are further apart than the {:g} s in which an error of height grows e-fold by itself:\n"
+      "Fixes are further apart than the {:g} s in which an error of height grows e-fold by "
+      "itself:\n"
       "the height, and all that hangs on it, is of no use before a fix. A barometer holds it.\n",
       kEfoldS);
 }
@@ -168,14 +169,7 @@ void print_tables(const sim::Scene& scene, const sim::CovarianceAnalysis& r,
 
 Json outages_json(const std::vector<sim::Coast>& coasts) {
   Json rows = Json::array();
-  for (const sim::Coast& c : coasts) {
-    rows.push_back({{"start_s", c.outage.start_s},
-                    {"duration_s", c.outage.duration_s},
-                    {"end_s", c.end_s},
-                    {"end_error_m", c.end_error_m},
-                    {"keeps_limit", c.keeps_limit()},
-                    {"coast_s", c.coast_s}});
-  }
+  for (const sim::Coast& coast : coasts) rows.push_back(coast_json(coast));
   return rows;
 }
 

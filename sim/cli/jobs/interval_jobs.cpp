@@ -16,18 +16,23 @@ namespace {
 /// IMU increments that checks nobody asked for may take, some five seconds' work of a processor.
 constexpr double kSpareIncrements = 3e6;
 
+/// The scene with its own IMU. What the command line says of the biases and the range of a class is
+/// not said of it.
+sim::Scene own_scene(SceneChoice choice) {
+  choice.imus.clear();
+  choice.bias.reset();
+  choice.range.reset();
+  return scene_of(choice);
+}
+
 /// All five classes, unless the command line names IMUs; the scene's own when it is none of them.
-std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice) {
+std::vector<sim::Scene> scenes_to_solve(const SceneChoice& choice, const sim::Scene& own) {
   if (!choice.imus.empty()) return scenes_of(choice);
   SceneChoice classes = choice;
   classes.imus.assign(kNames<ImuClass>.begin(), kNames<ImuClass>.end());
   std::vector<sim::Scene> scenes = scenes_of(classes);
-  SceneChoice as_written = choice;
-  as_written.bias.reset();
-  as_written.range.reset();
-  sim::Scene own = scene_of(as_written);
   const auto is_own = [&own](const sim::Scene& scene) { return scene.imu_name == own.imu_name; };
-  if (std::none_of(scenes.begin(), scenes.end(), is_own)) scenes.push_back(std::move(own));
+  if (std::none_of(scenes.begin(), scenes.end(), is_own)) scenes.push_back(own);
   return scenes;
 }
 
@@ -117,9 +122,13 @@ bool have_same_aiding(const sim::SceneVehicle& a, const sim::SceneVehicle& b) {
   });
 }
 
+/// @pre the scene's own limit is among those that are solved
 void solve_aiding(SolvedImu& imu) {
   if (!imu.scene.vehicle) return;
   Progress bar("aiding");
+  const sim::AllowedError own = imu.scene.limit.allowed();
+  const auto answered = std::ranges::find(
+      imu.limits, own, [](const SolvedLimit& answer) { return answer.interval.allowed(); });
   const auto sets = aiding_sets(*imu.scene.vehicle);
   for (const auto& [name, vehicle] : sets) {
     sim::Scene scene = imu.scene;
@@ -127,8 +136,10 @@ void solve_aiding(SolvedImu& imu) {
     sim::IntervalConfig config;
     config.tolerance = 1e-2;
     config.with_step_effect = false;
-    imu.aided.push_back({name, have_same_aiding(vehicle, *imu.scene.vehicle),
-                         solve_intervals(scene, {scene.limit.allowed()}, config).front()});
+    const bool is_the_scenes = have_same_aiding(vehicle, *imu.scene.vehicle);
+    imu.aided.push_back(
+        {name, is_the_scenes,
+         is_the_scenes ? answered->interval : solve_intervals(scene, {own}, config).front()});
     bar.show(static_cast<double>(imu.aided.size()) / static_cast<double>(sets.size()));
   }
 }
@@ -200,13 +211,15 @@ std::vector<Cell> cells_to_check(std::vector<SolvedImu>& solved, const IntervalC
 
 /// What is owed, and the shortest intervals as far as spare work reaches: counted, not timed, so
 /// that the answer does not depend on the machine.
-void check(std::vector<SolvedImu>& solved, const IntervalChoice& choice,
-           const std::string& own_imu, const sim::Ranks& ranks) {
+void check(std::vector<SolvedImu>& solved, const IntervalChoice& choice, const std::string& own_imu,
+           const sim::Ranks& ranks) {
   double spare = kSpareIncrements;
+  std::map<const SolvedImu*, sim::ErrorTrack> tracks;
   for (const Cell& cell : cells_to_check(solved, choice, own_imu)) {
     if (!cell.is_owed && cell.increments > spare) return;
-    const sim::ErrorTrack track = sim::error_track(cell.imu->scene);
-    try_trials(cell.imu->scene, track, ranks, *cell.answer, sim::check);
+    const sim::Scene& scene = cell.imu->scene;
+    if (!tracks.contains(cell.imu)) tracks.emplace(cell.imu, sim::error_track(scene));
+    try_trials(scene, tracks.at(cell.imu), ranks, *cell.answer, sim::check);
     if (cell.answer->confirmation) {
       spare -= cell.increments / sim::kFewestTrials *
                static_cast<double>(cell.answer->confirmation->trials_run);
@@ -218,12 +231,9 @@ void check(std::vector<SolvedImu>& solved, const IntervalChoice& choice,
 
 std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks& ranks,
                                   Json& series) {
-  SceneChoice as_written = choice.scene;
-  as_written.imus.clear();
-  as_written.range.reset();
-  const sim::Scene own = scene_of(as_written);
+  const sim::Scene own = own_scene(choice.scene);
   const std::vector<sim::AllowedError> limits = limits_to_solve(choice, own.limit);
-  const std::vector<sim::Scene> scenes = scenes_to_solve(choice.scene);
+  const std::vector<sim::Scene> scenes = scenes_to_solve(choice.scene, own);
   std::vector<SolvedImu> solved;
   Progress bar("interval");
   for (const sim::Scene& scene : scenes) {

@@ -8,12 +8,12 @@ namespace leeway::cli {
 namespace {
 
 void check_need(const sim::Scene& scene, double need_s) {
-  const double longest_s = 0.5 * scene.duration_s;
+  const double longest_s = sim::longest_interval_s(scene);
   if (need_s > longest_s) {
     throw Error(fmt::format(
-        "--need {:g} s: must be at most {:g} s, half the scene, so that fixes repeat; a "
-        "scene that goes on holds it with --at {:g}",
-        need_s, longest_s, 2.0 * need_s));
+        "--need {:g} s: must be at most {:g} s, the longest that this scene can be asked for; one "
+        "that goes on holds it with --at {:g}",
+        need_s, longest_s, scene.gnss.settle_s + 2.0 * need_s));
   }
 }
 

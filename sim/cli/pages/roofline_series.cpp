@@ -21,7 +21,7 @@ SeriesTable roofline_series(const sim::Scene& scene, const std::map<double, doub
   SeriesTable table(columns);
   std::set<double> intervals_s;
   for (const auto& [interval_s, error_m] : true_m) intervals_s.insert(interval_s);
-  const double longest_s = 0.5 * scene.duration_s;
+  const double longest_s = sim::longest_interval_s(scene);
   for (int i = 0; kShortestS * std::pow(10.0, i / double{kPointsPerDecade}) < longest_s; ++i) {
     intervals_s.insert(kShortestS * std::pow(10.0, i / double{kPointsPerDecade}));
   }

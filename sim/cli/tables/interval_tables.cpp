@@ -2,16 +2,12 @@
 
 #include <cmath>
 
+#include "leeway/sim/sensors/imu_class_name.hpp"
 #include "sim/cli/scene_options.hpp"
+#include "sim/cli/tables/coast_tables.hpp"
 
 namespace leeway::cli {
 namespace {
-
-/// Three significant digits, in seconds.
-std::string seconds(double s) {
-  if (std::isnan(s)) return "-";
-  return number(s, s < 10.0 ? 2 : s < 100.0 ? 1 : 0);
-}
 
 std::string calibrated(const sim::Interval& answer) {
   if (answer.outcome == sim::Interval::Outcome::kNever) return "none";
@@ -101,10 +97,9 @@ void print_optimism(const std::vector<SolvedImu>& solved) {
       pessimism = std::max(pessimism, 1.0 / ratio);
       if (ratio < kWorthSaying) continue;
       any = true;
-      table.add(
-          {imu.scene.imu_name, words_of(a.allowed()), calibrated(a), number(a.true_m, 2),
-           number(a.claimed_m, 2), fmt::format("optimistic by x{:.2f}", ratio)},
-          Tone::kDoubtful);
+      table.add({imu.scene.imu_name, words_of(a.allowed()), calibrated(a), number(a.true_m, 2),
+                 number(a.claimed_m, 2), fmt::format("optimistic by x{:.2f}", ratio)},
+                Tone::kDoubtful);
     }
   }
   if (any) {
@@ -124,8 +119,8 @@ std::string verdict(const sim::Confirmation& c) {
 }
 
 void print_confirmations(const std::vector<SolvedImu>& solved) {
-  Table table({"<IMU", "limit", "linear, s", "trials", "error / linear", "+-", "RMS / sigma", "NEES",
-               "95 % band", "diverged", "<verdict"});
+  Table table({"<IMU", "limit", "linear, s", "trials", "error / linear", "+-", "RMS / sigma",
+               "NEES", "95 % band", "diverged", "<verdict"});
   bool any = false;
   for (const SolvedImu& imu : solved) {
     for (const SolvedLimit& answer : imu.limits) {
@@ -135,8 +130,8 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
       const sim::CampaignResult& r = c.campaign;
       table.add({imu.scene.imu_name, words_of(answer.interval.allowed()),
                  seconds(answer.interval.interval_s), std::to_string(r.trials),
-                 number(c.error_over_true, 3), number(c.scatter, 3), number(r.rms_over_sigma, 3), number(r.mean_nees, 2),
-                 fmt::format("{:.2f} to {:.2f}", r.nees_low, r.nees_high),
+                 number(c.error_over_true, 3), number(c.scatter, 3), number(r.rms_over_sigma, 3),
+                 number(r.mean_nees, 2), fmt::format("{:.2f} to {:.2f}", r.nees_low, r.nees_high),
                  std::to_string(r.diverged), verdict(c)},
                 c.agrees ? Tone::kGood : Tone::kBad);
     }
@@ -157,30 +152,13 @@ void print_confirmations(const std::vector<SolvedImu>& solved) {
 /// What each sensor and constraint of the vehicle buys.
 void print_aiding(const SolvedImu& imu) {
   if (imu.aided.empty()) return;
-  fmt::print("\nWhat the vehicle tells beside its receiver, {} at {}, linear\n",
-             imu.scene.imu_name, words_of(imu.scene.limit.allowed()));
+  fmt::print("\nWhat the vehicle tells beside its receiver, {} at {}, linear\n", imu.scene.imu_name,
+             words_of(imu.scene.limit.allowed()));
   Table table({"<aiding", "interval, s", "<"});
   for (const AidedInterval& aided : imu.aided) {
     table.add({aided.aiding, calibrated(aided.interval), aided.is_the_scenes ? "the scene's" : ""});
   }
   table.print();
-}
-
-/// Outages that the scene scripts.
-void print_coasts(const std::vector<SolvedImu>& solved) {
-  Table table({"<IMU", "outage at, s", "for, s", "error at its end, m", "limit, m", "<keeps it",
-               "coast time, s"});
-  for (const SolvedImu& imu : solved) {
-    for (const sim::Coast& c : imu.coasts) {
-      table.add({imu.scene.imu_name, number(c.outage.start_s, 1), number(c.outage.duration_s, 1),
-                 number(c.end_error_m, 2), number(c.end_allowed_m, 2),
-                 c.keeps_limit() ? "yes" : fmt::format("no, at {:.1f} s", c.end_s),
-                 std::isnan(c.coast_s) ? "to the scene's end" : seconds(c.coast_s)},
-                c.keeps_limit() ? Tone::kGood : Tone::kBad);
-    }
-  }
-  table.print();
-  fmt::print("  Coast time: how long without fixes until the limit, from the outage's start.\n");
 }
 
 void print_how(const std::vector<SolvedImu>& solved) {
@@ -203,13 +181,10 @@ void print_how(const std::vector<SolvedImu>& solved) {
       settled, all);
 }
 
-/// "tactical/mid" is a class and where in its range; anything else is a name alone.
 Json imu_json(const std::string& imu) {
-  const std::size_t slash = imu.rfind('/');
-  if (slash == imu.npos || !from_name<RangeEnd>(imu.substr(slash + 1))) {
-    return {{"imu", imu}, {"range", nullptr}};
-  }
-  return {{"imu", imu.substr(0, slash)}, {"range", imu.substr(slash + 1)}};
+  const auto in_range = sim::class_of_name(imu);
+  if (!in_range) return {{"imu", imu}, {"range", nullptr}};
+  return {{"imu", name(in_range->imu_class)}, {"range", name(in_range->range)}};
 }
 
 Json confirm_json(const sim::Confirmation& c) {
@@ -231,15 +206,8 @@ Json coasts_json(const SolvedImu& imu) {
   Json rows = Json::array();
   for (const sim::Coast& c : imu.coasts) {
     Json row = imu_json(imu.scene.imu_name);
-    row["start_s"] = c.outage.start_s;
-    row["duration_s"] = c.outage.duration_s;
-    row["end_s"] = c.end_s;
-    row["end_error_m"] = c.end_error_m;
     row["metric"] = name(imu.scene.limit.metric);
-    row.update(limit_json(sim::AllowedError(c.limit_m, c.share)));
-    row["end_allowed_m"] = c.end_allowed_m;
-    row["keeps_limit"] = c.keeps_limit();
-    row["coast_s"] = c.coast_s;
+    row.update(coast_json(c));
     rows.push_back(std::move(row));
   }
   return rows;
@@ -295,15 +263,18 @@ void print_interval_tables(const std::vector<SolvedImu>& solved) {
   fmt::print("Scene '{}' ({}), evaluated after {:g} s\n", scene.name, scene.trajectory.name,
              scene.duration_s);
   if (scene.gnss.settle_s > 0.0) {
-    fmt::print("Fixes every {:g} s for the first {:g} s, then at the interval; every error after "
-               "that counts\n",
-               scene.gnss.settle_interval_s, scene.gnss.settle_s);
+    fmt::print(
+        "Fixes every {:g} s for the first {:g} s, then at the interval; every error after "
+        "that counts\n",
+        scene.gnss.settle_interval_s, scene.gnss.settle_s);
   }
   fmt::print("{}", preset_line(scene.limit));
   if (solved.front().limits.empty()) {
     fmt::print("The scene has outages: the {} at their ends, fixes every {:g} s else\n",
                words_of(scene.limit.metric), scene.gnss.interval_s);
-    return print_coasts(solved);
+    std::vector<NamedCoasts> coasts;
+    for (const SolvedImu& imu : solved) coasts.push_back({imu.scene.imu_name, imu.coasts});
+    return print_coasts(coasts);
   }
   fmt::print(
       "Time without fixes from a perfect start / longest time between fixes, s, for the {} "

@@ -198,7 +198,7 @@ TEST_CASE("wrong configurations are refused with the allowed range") {
   IntervalConfig config;
   config.shortest_s = 1e5;
   CHECK_THROWS_WITH_AS(solve_intervals(scene, {1.0}, config),
-                       doctest::Contains("half the scene's duration"), Error);
+                       doctest::Contains("the longest that the scene can be asked for"), Error);
 }
 
 }  // namespace leeway::sim

@@ -310,10 +310,14 @@ TEST_CASE("options out of range, and a scene with nothing to score") {
 }
 
 TEST_CASE("ten times the trials take the same memory" * doctest::test_suite("heavy")) {
+  // Pages come and go with the machine: the least of three. The 1800 scores of 160 bytes alone
+  // would be more.
   const auto peak_kib = [](int trials) {
-    return Child(campaign(trials, 20) + "--threads 2").peak_memory_kib();
+    const auto once = [trials] {
+      return Child(campaign(trials, 20) + "--threads 2").peak_memory_kib();
+    };
+    return std::min({once(), once(), once()});
   };
-  // Pages come and go; the 1800 scores of 160 bytes alone would be more.
   CHECK(peak_kib(2000) - peak_kib(200) < 256);
 }
 

@@ -21,7 +21,8 @@ std::string scene(const char* file) {
 
 TEST_CASE("interval: five classes by five limits, as the contract says" *
           doctest::test_suite("heavy")) {
-  const auto object = leeway("interval" + scene("square-loop.toml") + "--at 3600 --no-check --json").json();
+  const auto object =
+      leeway("interval" + scene("square-loop.toml") + "--at 3600 --no-check --json").json();
   CHECK(object.at("command") == "interval");
   const auto& results = object.at("results");
   REQUIRE(results.size() == 25);
@@ -100,8 +101,8 @@ TEST_CASE("interval: an EKF that is not consistent is said not to be" *
 TEST_CASE(
     "interval: where trials are lost at the answer, a shorter one is found that keeps the limit" *
     doctest::test_suite("heavy")) {
-  // 2026-11-28: the search drew secants through errors of lost filters, and found nothing. The filter
-  // alone, from a cold start: the navigator is not lost here.
+  // 2026-11-28: the search drew secants through errors of lost filters, and found nothing. The
+  // filter alone, from a cold start: the navigator is not lost here.
   const TempDir dir;
   std::ifstream file(std::filesystem::path(LEEWAY_SCENES_DIR) / "town-car.toml");
   std::string text(std::istreambuf_iterator<char>(file), {});
@@ -137,6 +138,18 @@ TEST_CASE("interval: the scene's own question is checked, whatever else is asked
                          .at("results")
                          .at(0);
   CHECK(alone.at("interval_s") == own.at("interval_s"));
+}
+
+TEST_CASE("interval: a bias model is said of the classes, not of the scene's own part" *
+          doctest::test_suite("heavy")) {
+  // 2026-12-01: the own scene was refused, for an in-run drift that its part states.
+  const auto rows = leeway("interval" + scene("town-car.toml") +
+                           "--bias gauss_markov --limit 100 --at 600 --no-check --json")
+                        .json()
+                        .at("results");
+  REQUIRE(rows.size() == 6);
+  CHECK(rows[0].at("bias_model") == "gauss_markov");
+  CHECK(rows[5].at("imu") == "automotive-mems");
 }
 
 TEST_CASE("interval: a scene with outages is asked for their ends and the coast time" *

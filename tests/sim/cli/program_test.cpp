@@ -77,7 +77,7 @@ TEST_CASE("wrong usage exits with 1 and one line that names what is wrong") {
       {"", "subcommand"},
       {"flie", "did you mean 'fuse'?"},
       {"campaign --scene x --first-seed -1", "--first-seed: -1 is below 0"},
-      {"campaign --scene x --limit -3", "-3 is not above 0"},
+      {"campaign --scene x --limit -3", "must be 0.01 to 100000 m"},
       {"drift --trials many", "--trials"},
       {"drift --trials 1", "trials"},
       {"drift --latitude 91", "latitude"},

@@ -26,7 +26,7 @@ function checkInterval(results: unknown, tables: Tables): void {
     const answer = (series: string): number =>
       numberIn(
         rowsIn(tables, "free-against-calibrated", series).find(
-          (r) => numberIn(r, "limit of the horizontal error, m") === row.limit_m,
+          (r) => numberIn(r, "limit, m") === row.limit_m,
         ),
         "time, s",
       );
@@ -35,7 +35,7 @@ function checkInterval(results: unknown, tables: Tables): void {
     const solved = rowsIn(tables, "error-over-interval", imu).find(
       (r) => numberIn(r, kTime) === row.interval_s,
     );
-    assert.equal(numberIn(solved, "horizontal error before a fix, m"), row.error_m);
+    assert.equal(numberIn(solved, "error before a fix, m"), row.error_m);
   }
 }
 

@@ -30,7 +30,9 @@ std::vector<SharedTrial> errors_at_scored_fixes(const TrialPlan& plan, const Ran
     if (!plan.fixes()[k].scored) return {};
     return epoch.error_h_m;
   };
-  return shared_trials(plan, error, ranks);
+  const Scene& scene = plan.scene();
+  return shared_trials(plan, {scene.first_seed, static_cast<std::uint64_t>(scene.trials)}, error,
+                       ranks);
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ struct Elasticities {
 /// Elasticities by central differences of 5 % in the specification, in the truth and in what the
 /// filter takes for it: two analyses each.
 /// @param track  error_track() of this scene
-/// @throws Error when the scene is invalid, or unless 0.01 <= interval_s <= half the scene.
+/// @throws Error when the scene is invalid, or unless 0.01 <= interval_s <=
+/// longest_interval_s(scene).
 Elasticities elasticities(const Scene& scene, const ErrorTrack& track, double interval_s);
 
 }  // namespace leeway::sim

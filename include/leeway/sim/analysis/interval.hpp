@@ -15,7 +15,7 @@ namespace leeway::sim {
 
 /// Options of solve_intervals().
 struct IntervalConfig {
-  double shortest_s{0.1};  ///< intervals from here to half the scene are tried
+  double shortest_s{0.1};  ///< intervals from here to longest_interval_s() are tried
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
   double covariance_step_s{1.0};
   bool with_step_effect{true};  ///< whether Interval::step_effect is wanted
@@ -30,7 +30,7 @@ struct Interval {
   enum class Outcome {
     kSolved,
     kNever,   ///< even at the shortest interval the error exceeds the limit; interval_s is NaN
-    kAlways,  ///< even at half the scene the error stays below; interval_s is half the scene
+    kAlways,  ///< even at longest_interval_s(), which is interval_s, the error stays below
   };
   double limit_m{};
   double share{};  ///< of the way since the last fix, allowed on top

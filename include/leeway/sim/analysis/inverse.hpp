@@ -64,8 +64,8 @@ struct Inverse {
 /// The inverse. The error budget predicts each factor: a source's mean square goes with the square
 /// of its specification. Analyses with the filter's gains for the new IMU then settle it.
 /// @param interval_s  the time between fixes that is needed
-/// @throws Error when the scene is invalid, unless 0.01 <= interval_s <= half the scene, and unless
-/// 0 < limit_m <= 1e6.
+/// @throws Error when the scene is invalid, unless 0.01 <= interval_s <=
+/// longest_interval_s(scene), and unless 0 < limit_m <= 1e6.
 Inverse invert(const Scene& scene, double interval_s, double limit_m,
                const InverseConfig& config = {});
 

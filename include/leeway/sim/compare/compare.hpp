@@ -74,9 +74,6 @@ struct Comparison {
 /// The smallest value that 95 % of the values do not exceed; NaN without any.
 double r95_of(std::vector<double> values);
 
-/// The value that so many of the values are at most; NaN without any.
-double quantile_of(std::vector<double> values, double probability);
-
 /// The scene as variants are compared in it: fixes come without latency and without outliers,
 /// because the plain filter has neither a history nor a gate.
 Scene comparable(const Scene& scene);

@@ -59,15 +59,14 @@ struct Scene {
   std::uint64_t first_seed{1};  ///< trial k has seed first_seed + k
 
   static auto visit(auto& c, const auto& visitor) {
-    return visitor(Field{"name", c.name}, NoData{} /* trajectory */,
-                   Field{"duration_s", c.duration_s, kPositive},
-                   Field{"imu_rate_hz", c.imu_rate_hz, between(1.0, 1e4)},
-                   Field{"imu_name", c.imu_name}, Field{"imu", c.imu}, Field{"gnss", c.gnss},
-                   Field{"estimator", c.estimator}, Field{"filter", c.filter},
-                   Field{"imu_divider", c.imu_divider, between(1.0, 1e3)},
-                   Field{"vehicle", c.vehicle}, Field{"initial", c.initial},
-                   Field{"limit", c.limit},
-                   Field{"trials", c.trials, between(1.0, 1e9)}, Field{"first_seed", c.first_seed});
+    return visitor(
+        Field{"name", c.name}, NoData{} /* trajectory */,
+        Field{"duration_s", c.duration_s, kPositive},
+        Field{"imu_rate_hz", c.imu_rate_hz, between(1.0, 1e4)}, Field{"imu_name", c.imu_name},
+        Field{"imu", c.imu}, Field{"gnss", c.gnss}, Field{"estimator", c.estimator},
+        Field{"filter", c.filter}, Field{"imu_divider", c.imu_divider, between(1.0, 1e3)},
+        Field{"vehicle", c.vehicle}, Field{"initial", c.initial}, Field{"limit", c.limit},
+        Field{"trials", c.trials, between(1.0, 1e9)}, Field{"first_seed", c.first_seed});
   }
 };
 
@@ -82,13 +81,17 @@ void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model);
 /// 1e-5 rad and 10 deg), at the GNSS's own sigmas of velocity and horizontal position.
 InitialSigma initial_sigma(const Scene& scene);
 
-/// Length in s of the last part of the scene, whose fixes count by their arrival: all after the time
-/// to settle, or, without one, repeating_part_s().
+/// Length in s of the last part of the scene, whose fixes count by their arrival: all after the
+/// time to settle, or, without one, repeating_part_s().
 double scored_part_s(const Scene& scene);
 
 /// Length in s of a stretch that is worth comparing with the next one: limit.last_s, two fix
 /// intervals or a period of the trajectory, whichever is longest.
 double repeating_part_s(const Scene& scene);
+
+/// The longest time between fixes in s that the scene can be asked for: half its duration, so that
+/// fixes repeat, and no longer than that one arrives after the time to settle.
+double longest_interval_s(const Scene& scene);
 
 /// How the scene's navigator is told to run.
 NavigatorConfig navigator_config(const Scene& scene);

@@ -5,13 +5,14 @@
 
 #include <optional>
 
+#include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/navigator_config.hpp"
 
 namespace leeway::sim {
 
-/// A sensor of the vehicle: when it reads, and its white noise in the unit of its reading. What else
-/// is wrong with it is what the estimator takes for possible: the scale of the odometer and the
-/// offset of the barometer are drawn from VehicleConfig's sigmas and walk as it says.
+/// A sensor of the vehicle: when it reads, and its white noise in the unit of its reading. What
+/// else is wrong with it is what the estimator takes for possible: the scale of the odometer and
+/// the offset of the barometer are drawn from VehicleConfig's sigmas and walk as it says.
 struct VehicleSensor {
   double interval_s{};
   double sigma{};  ///< m/s, m or rad
@@ -23,9 +24,9 @@ struct VehicleSensor {
 };
 
 /// Sensors as a scene has them that says no more than that they are there.
-inline constexpr VehicleSensor kUsualOdometer{0.1, 0.1};
-inline constexpr VehicleSensor kUsualBarometer{1.0, 0.5};
-inline constexpr VehicleSensor kUsualHeading{1.0, 0.035};
+inline constexpr VehicleSensor kUsualOdometer{0.1, OdometerSpeed{}.sigma_mps};
+inline constexpr VehicleSensor kUsualBarometer{1.0, BarometricHeight{}.sigma_m};
+inline constexpr VehicleSensor kUsualHeading{1.0, MeasuredHeading{}.sigma_rad};
 
 /// A vehicle. Its motion is the trajectory's, without side slip: the point that never slides is the
 /// IMU's own, which is why rear_axle_x_m is 0 here unless a scene says otherwise.

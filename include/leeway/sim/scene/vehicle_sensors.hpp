@@ -1,6 +1,6 @@
 /// @file
-/// The sensors of a scene's vehicle beside IMU and receiver, simulated: odometer, barometer, measured
-/// heading.
+/// The sensors of a scene's vehicle beside IMU and receiver, simulated: odometer, barometer,
+/// measured heading.
 #pragma once
 
 #include <functional>

@@ -77,7 +77,8 @@ struct TrialEpoch {
 /// The score of one trial. The filter is told scene.filter and starts from its known biases, zero
 /// spread bias, and a start error drawn from initial_sigma(scene); the sensors are scene.imu. A
 /// navigator (scene.estimator) is told navigator_config(scene), and aligns by itself unless the
-/// scene has start errors; of it fused fixes are told as they arrive. Same plan and seed, same bits.
+/// scene has start errors; of it fused fixes are told as they arrive. Same plan and seed, same
+/// bits.
 /// @param observer  called before every fix, scored or not
 TrialScore run_trial(const TrialPlan& plan, std::uint64_t seed,
                      const std::function<void(const TrialEpoch&)>& observer = {});
