@@ -39,6 +39,8 @@ std::string number(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
 }
 
+std::string seconds(double s) { return number(s, s < 10.0 ? 2 : s < 100.0 ? 1 : 0); }
+
 Table::Table(const std::vector<std::string>& headings) {
   for (const std::string& heading : headings) {
     is_left_.push_back(heading.starts_with('<'));

@@ -18,6 +18,9 @@ namespace leeway::cli {
 /// A number with so many decimals, or "-" for what is not defined.
 std::string number(double value, int decimals);
 
+/// Seconds with three significant digits, or "-".
+std::string seconds(double s);
+
 /// What a row of a table says: its colour on a terminal that shows any, unless NO_COLOR is set.
 enum class Tone { kPlain, kGood, kDoubtful, kBad };
 

@@ -32,7 +32,7 @@ std::vector<Accuracy> accuracy_in(const TrialPlan& plan, const std::vector<Varia
   const auto runs = run_cases(cases_of(plan, variants), threads, progress);
   std::vector<Accuracy> result;
   for (std::size_t v = 0; v < variants.size(); ++v) {
-    result.push_back({figures_of(runs[v]), r95_of(radial_errors_m(runs[v])),
+    result.push_back({figures_of(runs[v]), quantile_of(sizes_m(ErrorMetric::kR95, runs[v]), 0.95),
                       variants[v].estimator != Estimator::kReset});
   }
   return result;
@@ -136,8 +136,6 @@ std::function<void(double)> part(const CompareOptions& options, double from, dou
 }
 
 }  // namespace
-
-double r95_of(std::vector<double> values) { return quantile_of(std::move(values), 0.95); }
 
 Consistency consistency_of(const Accuracy& accuracy) {
   const CampaignResult& r = accuracy.figures;

@@ -6,7 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "leeway/model/error_metric.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "sim/compare/variant_run.hpp"
 #include "sim/trials/campaign_sums.hpp"
@@ -118,13 +117,15 @@ Cost cost_of(std::vector<double> ns_per_s) {
   return {median, ns_per_s.front(), ns_per_s.back()};
 }
 
-std::vector<double> radial_errors_m(const std::vector<CaseRun>& runs) {
-  std::vector<double> radii_m;
+std::vector<double> sizes_m(ErrorMetric metric, const std::vector<CaseRun>& runs) {
+  std::vector<double> sizes;
   for (const CaseRun& run : runs) {
     if (!run.score.finite) continue;
-    for (const Eigen::Vector3d& e : run.error_n_m) radii_m.push_back(e.head<2>().norm());
+    for (std::size_t i = 0; i < run.error_n_m.size(); ++i) {
+      sizes.push_back(size_of_error_m(metric, run.error_n_m[i], run.course_rad[i]));
+    }
   }
-  return radii_m;
+  return sizes;
 }
 
 CampaignResult figures_of(const std::vector<CaseRun>& runs) {

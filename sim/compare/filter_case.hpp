@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "leeway/model/error_metric.hpp"
 #include "leeway/sim/compare/compare.hpp"
 #include "leeway/sim/trials/trial.hpp"
 
@@ -41,8 +42,8 @@ std::vector<std::vector<double>> times_ns_per_s(const std::vector<FilterCase>& c
 /// Median, least and most. @pre not empty
 Cost cost_of(std::vector<double> ns_per_s);
 
-/// Horizontal errors of the trials that are finite.
-std::vector<double> radial_errors_m(const std::vector<CaseRun>& runs);
+/// Sizes by the metric of the errors of the trials that are finite.
+std::vector<double> sizes_m(ErrorMetric metric, const std::vector<CaseRun>& runs);
 
 /// NIS and counts of fixes left out.
 CampaignResult figures_of(const std::vector<CaseRun>& runs);

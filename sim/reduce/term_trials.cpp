@@ -9,18 +9,6 @@
 namespace leeway::sim {
 namespace {
 
-/// Sizes by the metric of the errors of the trials that are finite.
-std::vector<double> sizes_m(ErrorMetric metric, const std::vector<CaseRun>& runs) {
-  std::vector<double> sizes;
-  for (const CaseRun& run : runs) {
-    if (!run.score.finite) continue;
-    for (std::size_t i = 0; i < run.error_n_m.size(); ++i) {
-      sizes.push_back(size_of_error_m(metric, run.error_n_m[i], run.course_rad[i]));
-    }
-  }
-  return sizes;
-}
-
 /// Of north, east and down.
 Eigen::Matrix3d second_moment_m2(const std::vector<CaseRun>& runs) {
   Eigen::Matrix3d sum_m2 = Eigen::Matrix3d::Zero();

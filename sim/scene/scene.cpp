@@ -28,6 +28,8 @@ void validate(const Scene& scene) {
   validate_fields("scene", scene);
   validate(scene.gnss.errors);
   require("scene", "duration_s", scene.duration_s, positive_to(scene.trajectory.duration_s));
+  const double last_fix_s = std::max(scene.duration_s - scene.gnss.latency_s, 0.0);
+  require("scene", "gnss.settle_s", scene.gnss.settle_s, between(0.0, last_fix_s));
 }
 
 void set_imu(Scene& scene, const std::string& name, const ImuErrorModel& model) {

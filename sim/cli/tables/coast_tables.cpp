@@ -7,11 +7,6 @@
 
 namespace leeway::cli {
 
-std::string seconds(double s) {
-  if (std::isnan(s)) return "-";
-  return number(s, s < 10.0 ? 2 : s < 100.0 ? 1 : 0);
-}
-
 void print_coasts(const std::vector<NamedCoasts>& of_imus) {
   Table table({"<IMU", "outage at, s", "for, s", "error at its end, m", "limit, m", "<keeps it",
                "coast time, s"});

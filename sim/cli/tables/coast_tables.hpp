@@ -10,9 +10,6 @@
 
 namespace leeway::cli {
 
-/// Three significant digits, in seconds.
-std::string seconds(double s);
-
 struct NamedCoasts {
   std::string imu{};
   std::span<const sim::Coast> coasts{};

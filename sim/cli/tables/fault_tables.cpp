@@ -50,8 +50,8 @@ std::string word(const sim::FaultCell& cell) {
 
 /// A row for each fault, with nothing where a cell was not run.
 std::vector<std::vector<std::string>> rows_of(const sim::FaultMatrix& matrix) {
-  std::vector<std::vector<std::string>> rows(
-      sim::faults().size(), std::vector<std::string>(sim::regimes().size() + 1));
+  std::vector<std::vector<std::string>> rows(sim::faults().size(),
+                                             std::vector<std::string>(sim::regimes().size() + 1));
   for (std::size_t f = 0; f < rows.size(); ++f) rows[f][0] = sim::faults()[f].name;
   for (const sim::FaultCell& cell : matrix.cells) rows[cell.fault][cell.regime + 1] = word(cell);
   return rows;
@@ -125,10 +125,10 @@ std::string unknowable_markdown() {
   for (const sim::Fault& fault : sim::faults()) {
     if (fault.unknowable.empty()) continue;
     const std::string why =
-        fault.unknowable + (fault.knowable_below_m == 0.0
-                                ? ""
-                                : fmt::format(", unless its 1 sigma is below {:g} m",
-                                              fault.knowable_below_m));
+        fault.unknowable +
+        (fault.knowable_below_m == 0.0
+             ? ""
+             : fmt::format(", unless its 1 sigma is below {:g} m", fault.knowable_below_m));
     if (why != reason && !reason.empty()) text += fmt::format(":\n  {}.\n", reason);
     text += fmt::format("{}{}", why == reason ? ", " : "- ", fault.name);
     reason = why;

@@ -49,9 +49,16 @@ void print_answers(const std::vector<SolvedImu>& solved) {
   }
   table.print();
   fmt::print(
-      "  l: linear analysis alone; c: checked, trials of the {} err the same within {:.0f} %;\n"
-      "  t: by trials, which err otherwise\n",
+      "  l: linear analysis alone; c: checked, trials of the {} err the same within {:.0f} % and "
+      "their\n"
+      "  scatter (two sigmas); t: by trials, which err otherwise\n",
       name(solved.front().scene.estimator), 100.0 * (sim::kAgreement - 1.0));
+}
+
+/// Whether the answer is only the longest time that the scene can be asked for.
+bool is_longer(const SolvedLimit& answer) {
+  return answer.interval.outcome == sim::Interval::Outcome::kAlways &&
+         answer.mark() != sim::Mark::kByTrials;
 }
 
 /// How often, in the words of the paper's conclusion.
@@ -78,8 +85,9 @@ void print_conclusion(const std::vector<SolvedImu>& solved) {
                std::isnan(answer.interval.free_inertial_s)
                    ? "never within the scene"
                    : how_often(answer.interval.free_inertial_s),
-               std::isnan(answer.interval_s()) ? "no interval is short enough"
-                                               : how_often(answer.interval_s())});
+               std::isnan(answer.interval_s())
+                   ? "no interval is short enough"
+                   : (is_longer(answer) ? "more than " : "") + how_often(answer.interval_s())});
   }
   table.print();
 }

@@ -72,7 +72,7 @@ std::string word(const sim::MismatchCampaign& campaign, const sim::MismatchCell&
 }
 
 std::vector<std::string> mismatch_row_of(const sim::MismatchCampaign& campaign,
-                                const sim::MismatchCell& cell) {
+                                         const sim::MismatchCell& cell) {
   const sim::TrueImu& imu = campaign.imus[cell.imu];
   const sim::ClaimSums& before = cell.before_fixes;
   const auto percent = [&](double epochs) { return number(100.0 * epochs / before.epochs, 1); };

@@ -65,7 +65,7 @@ TEST_CASE("interval --need: wrong needs are refused with what to write instead")
   refused("--need 0", "0 is not above 0");
   refused("--need '60 kg'", "'kg' is no unit of it: wanted a time between fixes, such as 60s");
   refused("--need sixty", "'sixty' is no number");
-  refused("--need 1h", "must be at most 900 s");
+  refused("--need 1h", "must be at most 900 s, the longest that this scene can be asked for");
   refused("--need 1h", "--at 7200");
   refused("--need 60 --limit 5kg", "5kg");
   refused("--need 60 --confirm 3", "excludes");

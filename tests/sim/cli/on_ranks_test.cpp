@@ -8,12 +8,11 @@
 namespace leeway::test {
 namespace {
 
-/// An IMU at two limits, one of which trials check.
+/// Two IMUs at a limit, which trials check.
 std::string interval(const std::string& options, int duration_s = 600) {
   return "interval --scene " +
          quoted(std::filesystem::path(LEEWAY_SCENES_DIR) / "square-loop.toml") +
-         " --imu automotive --limit 10,30 --at " + std::to_string(duration_s) + " " +
-         options;
+         " --imu tactical,automotive --limit 10 --at " + std::to_string(duration_s) + " " + options;
 }
 
 }  // namespace

@@ -38,11 +38,18 @@ TEST_CASE("a scene with a vehicle is run by the navigator, after five minutes of
   CHECK(driven("[vehicle]\nkind = \"car\"\n[filter]\nestimator = \"ekf\"\n").gnss.settle_s == 0.0);
   CHECK(driven("[vehicle]\nkind = \"car\"\n[gnss]\nsettle_s = 60\n").gnss.settle_s == 60.0);
   // No longer than until the first outage, nor than half of the scene.
-  const Scene tunnel = driven(
-      "[vehicle]\nkind = \"car\"\n[gnss]\noutages = [{ start_s = 120, duration_s = 30 }]\n");
+  const Scene tunnel =
+      driven("[vehicle]\nkind = \"car\"\n[gnss]\noutages = [{ start_s = 120, duration_s = 30 }]\n");
   CHECK(tunnel.gnss.settle_s == 120.0);
   CHECK(parse_scene(kDrive + "[vehicle]\nkind = \"car\"\n", "drive.toml", 200.0).gnss.settle_s ==
         100.0);
+}
+
+TEST_CASE("a scene that ends before its fixes have settled the filter is refused with the range") {
+  // 2026-12-01: the interval was said to have to be 0.01 to -100.1 s.
+  const std::string message = message_of<Error>(
+      [] { validate(driven("[vehicle]\nkind = \"car\"\n[gnss]\nsettle_s = 1100\n")); });
+  CHECK(contains(message, "gnss.settle_s is 1100, must be 0 to 1000"));
 }
 
 TEST_CASE("the sensors of a vehicle are those the scene names, with their errors in SI") {

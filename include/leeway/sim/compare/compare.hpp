@@ -71,9 +71,6 @@ struct Comparison {
   std::vector<Compared> variants{};  ///< by median cost, ascending
 };
 
-/// The smallest value that 95 % of the values do not exceed; NaN without any.
-double r95_of(std::vector<double> values);
-
 /// The scene as variants are compared in it: fixes come without latency and without outliers,
 /// because the plain filter has neither a history nor a gate.
 Scene comparable(const Scene& scene);
