@@ -9,7 +9,7 @@ namespace leeway::test {
 namespace {
 
 /// Two IMUs at a limit, which trials check.
-std::string interval(const std::string& options, int duration_s = 600) {
+std::string interval(const std::string& options, int duration_s = 300) {
   return "interval --scene " +
          quoted(std::filesystem::path(LEEWAY_SCENES_DIR) / "square-loop.toml") +
          " --imu tactical,automotive --limit 10 --at " + std::to_string(duration_s) + " " + options;
@@ -40,7 +40,7 @@ TEST_CASE("ranks of intervals that differ end with one message" * doctest::test_
     return;
   }
   const Outcome outcome = leeway(
-      interval("--json") + " : -n 1 " + quoted(LEEWAY_PROGRAM) + " " + interval("--json", 500),
+      interval("--json") + " : -n 1 " + quoted(LEEWAY_PROGRAM) + " " + interval("--json", 200),
       mpirun(1));
   CHECK(outcome.exit_code == 1);
   CHECK(outcome.out.empty());
