@@ -80,7 +80,10 @@ void validate(const NavigatorConfig& config) {
 }
 
 Navigator::Navigator(const NavigatorConfig& config)
-    : config_(checked(config)), timeline_(config), clock_(config.max_jump_s, config.max_gap_s) {}
+    : config_(checked(config)),
+      timeline_(config),
+      clock_(config.max_jump_s, config.max_gap_s),
+      receiver_clock_(config.filter.lever_arm_b_m) {}
 
 void Navigator::start(const Estimate& estimate, const ErrorMatrix& P) {
   NavigatorState state(config_);
@@ -140,6 +143,7 @@ Verdict Navigator::take(const ImuIncrement& inc) {
   step.is_gap = std::max(dt_s, inc.dt_s) > config_.max_gap_s;
   if (dt_s != step.inc.dt_s) step.inc = stretched(step.inc, dt_s);
   timeline_.push(step);
+  watch_clock(step);
   if (step.is_gap) return Verdict::kGap;
   return aligned() ? Verdict::kAccepted : Verdict::kAligning;
 }
@@ -175,18 +179,36 @@ Verdict Navigator::push(const Reading& reading) {
   return take({clock_.counted_on(t), reading});
 }
 
+// Several filters are told apart by other things. The attitude of one is known.
+void Navigator::watch_clock(const Step& step) {
+  if (step.is_gap || !aligned() || !state().bank().collapsed()) return receiver_clock_.restart();
+  ImuIncrement inc = step.inc;
+  if (const auto& C_bs = state().C_bs()) {
+    inc.dtheta_b_rad = *C_bs * inc.dtheta_b_rad;
+    inc.dv_b_mps = *C_bs * inc.dv_b_mps;
+  }
+  receiver_clock_.push(inc, filter().estimate());
+  if (!config_.timing.estimate_clock || !receiver_clock_.offset().age.beyond_chance) return;
+  // The estimate has followed the fixes, old as they were.
+  NavigatorState widened = state();
+  widened.widen(receiver_clock_.covariance(filter().estimate()));
+  timeline_.restart(widened, step.inc.time);
+  receiver_clock_.take_out();
+}
+
 Verdict Navigator::take(const GnssFix& fix) {
-  const TimingConfig& timing = config_.timing;
+  const FixAge lag_s = FixAge(config_.timing.position_lag_s, config_.timing.velocity_lag_s) +
+                       receiver_clock_.taken_out_s();
   if (fix.heading) {
-    const Time then = fix.time - duration_from_seconds(timing.position_lag_s);
+    const Time then = fix.time - duration_from_seconds(lag_s(0));
     push(MeasuredHeading{then, fix.heading->heading_rad, fix.heading->sigma_rad});
   }
   const Time t = clock_.counted_on(fix.time);
   GnssFix position = fix;
   position.heading.reset();
   GnssFix velocity = position;
-  position.time = t - duration_from_seconds(timing.position_lag_s);
-  velocity.time = t - duration_from_seconds(timing.velocity_lag_s);
+  position.time = t - duration_from_seconds(lag_s(0));
+  velocity.time = t - duration_from_seconds(lag_s(1));
   if (!fix.position) return take({velocity.time, velocity});
   if (!fix.velocity || position.time == velocity.time) return take({position.time, position});
   velocity.position.reset();
@@ -197,6 +219,7 @@ Verdict Navigator::take(const GnssFix& fix) {
 }
 
 Verdict Navigator::take(const Event& event) {
+  if (const auto* fix = std::get_if<GnssFix>(&event.reading)) receiver_clock_.push(*fix);
   const std::optional<Time>& now = clock_.newest();
   if (now && to_seconds(event.time - *now) > config_.timing.max_ahead_s) {
     return event.counts ? counted(Verdict::kFuture) : Verdict::kFuture;
@@ -204,8 +227,36 @@ Verdict Navigator::take(const Event& event) {
   return timeline_.push(event);
 }
 
+Health Navigator::health() const {
+  Health health = state().health(timeline_.now().value_or(Time{}));
+  const ClockOffset& clock = receiver_clock_.offset();
+  const FixAge& taken_out_s = receiver_clock_.taken_out_s();
+  health.clock_offset_s = clock.age.value_s + taken_out_s(clock.of_velocity ? 1 : 0);
+  health.clock_offset_sigma_s = clock.age.sigma_s;
+  health.clock_offset_detected = clock.age.beyond_chance || receiver_clock_.is_taken_out();
+  health.clock_offset_of_velocity =
+      clock.of_velocity || (receiver_clock_.is_taken_out() && taken_out_s(0) == 0.0);
+  if (health.state == Health::State::kAligned && clock.age.beyond_chance) {
+    health.state = Health::State::kInconsistent;
+  }
+  return health;
+}
+
+TimeToLimit Navigator::leeway(double limit_m, double probability) const {
+  if (!aligned()) return {};
+  if (!receiver_clock_.offset().age.beyond_chance) {
+    return time_to_limit(filter(), limit_m, probability);
+  }
+  Ekf widened = filter();
+  edit(widened,
+       [this](Belief& belief) { belief.P += receiver_clock_.covariance(belief.estimate); });
+  return time_to_limit(widened, limit_m, probability);
+}
+
 Solution Navigator::solution() const {
-  return leeway::solution(filter().estimate(), state().bank().covariance());
+  const Estimate& estimate = filter().estimate();
+  return leeway::solution(estimate,
+                          state().bank().covariance() + receiver_clock_.covariance(estimate));
 }
 
 }  // namespace leeway

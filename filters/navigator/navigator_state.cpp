@@ -61,6 +61,11 @@ void NavigatorState::start(const Estimate& estimate, const ErrorMatrix& P) {
             : HeadingBank(Ekf(filter_of(config_), estimate, P)));
 }
 
+void NavigatorState::widen(const ErrorMatrix& covariance) {
+  bank_->for_each(
+      [&](Ekf& filter) { edit(filter, [&](Belief& belief) { belief.P += covariance; }); });
+}
+
 void NavigatorState::begin(const HeadingBank& bank) {
   bank_ = bank;
   last_fused_ = bank_->best().estimate().nav.time;

@@ -29,6 +29,12 @@ struct Health {
   double position_sigma_scale{1.0};  ///< what the receiver's deviations are multiplied by
   double velocity_sigma_scale{1.0};
   double imu_sigma_scale{1.0};  ///< what the deviations of the IMU's noise are multiplied by
+  /// By how much fixes are older than their stamps on the IMU's clock, with what is taken out; its
+  /// sigma is 1 s while nothing shows it.
+  double clock_offset_s{0.0};
+  double clock_offset_sigma_s{1.0};
+  bool clock_offset_detected{false};     ///< it is beyond chance
+  bool clock_offset_of_velocity{false};  ///< of the velocities alone: the positions are right
   /// Position errors repeat themselves from fix to fix while they are fused as white: sigmas are
   /// too small. To be mended by EkfConfig::gnss_correlation_s.
   bool correlated_fixes{false};

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "leeway/ekf/time_to_limit.hpp"
+#include "leeway/monitors/clock_monitor.hpp"
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/health.hpp"
 #include "leeway/navigator/imu_clock.hpp"
@@ -53,14 +54,12 @@ class Navigator {
 
   /// How long from the newest IMU time, without another fix, the horizontal error stays within the
   /// limit with the given probability (time_to_limit); 0 before alignment.
-  TimeToLimit leeway(double limit_m, double probability = 0.95) const {
-    return aligned() ? time_to_limit(filter(), limit_m, probability) : TimeToLimit{};
-  }
+  TimeToLimit leeway(double limit_m, double probability = 0.95) const;
 
   /// Sensor axes to body axes; nothing while the mount is unknown.
   const std::optional<Eigen::Matrix3d>& C_bs() const { return state().C_bs(); }
 
-  Health health() const { return state().health(timeline_.now().value_or(Time{})); }
+  Health health() const;
 
   /// The newest fix that reached the filter; dof 0 before the first.
   const UpdateOutcome& last_update() const { return state().last_update(); }
@@ -81,7 +80,7 @@ class Navigator {
  private:
   template <class Archive>
   void visit(Archive& archive) {
-    archive(timeline_, clock_, sample_, newest_, carried_, counts_);
+    archive(timeline_, clock_, receiver_clock_, sample_, newest_, carried_, counts_);
   }
 
   const NavigatorState& state() const { return timeline_.state(); }
@@ -92,10 +91,12 @@ class Navigator {
   Verdict take(const ImuSample& sample);
   Verdict take(const GnssFix& fix);
   Verdict take(const Event& event);
+  void watch_clock(const Step& step);
 
   NavigatorConfig config_;
   Timeline timeline_;
   ImuClock clock_;
+  ClockMonitor receiver_clock_;
   std::optional<ImuSample> sample_{};
   std::optional<ImuIncrement> newest_{};
   std::optional<ImuIncrement> carried_{};  // waits for the next one

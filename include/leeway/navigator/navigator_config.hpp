@@ -19,6 +19,9 @@ struct TimingConfig {
   /// that reports the mean velocity of an epoch has half an epoch here.
   double position_lag_s{0.0};
   double velocity_lag_s{0.0};
+  /// Takes the offset between the clocks of receiver and IMU out, once health tells of one. The
+  /// solution then depends on when fixes arrive, too.
+  bool estimate_clock{false};
   double max_lateness_s{2.0};  ///< an input may arrive this long after IMU data of its time
   double max_ahead_s{10.0};    ///< a measurement further ahead of the IMU data is from the future
   double max_imu_rate_hz{400.0};  ///< at more than this the lateness that fits shrinks
@@ -26,6 +29,7 @@ struct TimingConfig {
   static auto visit(auto& c, const auto& visitor) {
     return visitor(Field{"position_lag_s", c.position_lag_s, between(-10.0, 10.0)},
                    Field{"velocity_lag_s", c.velocity_lag_s, between(-10.0, 10.0)},
+                   Field{"estimate_clock", c.estimate_clock},
                    Field{"max_lateness_s", c.max_lateness_s, between(0.0, 60.0)},
                    Field{"max_ahead_s", c.max_ahead_s, between(0.0, 1e4)},
                    Field{"max_imu_rate_hz", c.max_imu_rate_hz, between(1.0, 1e4)});

@@ -59,6 +59,9 @@ class NavigatorState {
   /// @param now  that integrate() and bridge() have reached
   Health health(Time now) const;
 
+  /// Adds to the covariance of every filter. @pre aligned().
+  void widen(const ErrorMatrix& covariance);
+
   /// Names every member that changes, for a snapshot.
   template <class Archive>
   void visit(Archive& archive) {

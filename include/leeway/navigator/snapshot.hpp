@@ -9,7 +9,7 @@
 namespace leeway {
 
 /// The form of the bytes. Any change of what a snapshot holds changes it.
-inline constexpr std::uint32_t kSnapshotVersion = 6;
+inline constexpr std::uint32_t kSnapshotVersion = 7;
 
 /// What became of an attempt to restore. Anything but kRestored changes nothing.
 enum class Restore : std::uint8_t {

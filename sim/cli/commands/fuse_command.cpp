@@ -160,6 +160,8 @@ void add_timing_options(CLI::App& app, TimingConfig& timing) {
                      "GNSS positions are those of this long before their time, s");
   add_default_option(app, "--velocity-lag-s", timing.velocity_lag_s,
                      "the same for velocities: half an epoch where they are means over one, s");
+  app.add_flag("--estimate-clock", timing.estimate_clock,
+               "take the offset between the clocks of receiver and IMU out, once turns show one");
 }
 
 void add_solution_options(CLI::App& app, FuseOptions& options) {

@@ -131,6 +131,22 @@ void print_outages(const std::vector<FuseJob>& jobs) {
   table.print();
 }
 
+void warn_of_clock(const Health& health, const std::string& where) {
+  const double ms = 1000.0 * std::abs(health.clock_offset_s);
+  const double sigma_ms = 1000.0 * health.clock_offset_sigma_s;
+  const char* direction = health.clock_offset_s > 0.0 ? "older" : "younger";
+  if (health.clock_offset_of_velocity) {
+    spdlog::warn(
+        "{}velocities are {:.0f} +- {:.0f} ms {} than their fixes: --velocity-lag-s {:.3f}", where,
+        ms, sigma_ms, direction, health.clock_offset_s);
+    return;
+  }
+  spdlog::warn(
+      "{}fixes are {:.0f} +- {:.0f} ms {} than their times say, by the clock of the IMU: "
+      "--estimate-clock takes that out (a wrong --lever looks alike: 1 m at 10 m/s is 100 ms)",
+      where, ms, sigma_ms, direction);
+}
+
 void warn_of(const FuseLog& log) {
   const LogSummary& summary = log.summary;
   if (summary.carried_over > 0) {
@@ -255,6 +271,7 @@ void warn(const FuseJob& job) {
   if (const auto n = count(r, Verdict::kPartly); n > 0) {
     spdlog::warn("{}of {} fixes the gate refused the position or the velocity", where, n);
   }
+  if (r.health.clock_offset_detected) warn_of_clock(r.health, where);
   if (!r.has_solution) spdlog::warn("{}no solution: {}", where, why_no_solution(r));
   constexpr double kUpsideDownDeg = 90.0;
   if (std::abs(r.final_roll_deg) > kUpsideDownDeg) {

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/earth/units.hpp"
 #include "leeway/sim/tools/random.hpp"
 #include "tests/support/near.hpp"
 

@@ -213,5 +213,43 @@ TEST_CASE("a car that nobody saw for 5 s may have turned, and its course with it
   }
 }
 
+/// A receiver whose stamps are late by 0.2 s: some 3 m at 15 m/s.
+Run with_clock_off() {
+  Run run = car_run(400.0);
+  run.score_from_s = 250.0;
+  run.on_fix = [](GnssFix& fix, double) {
+    fix.time += duration_from_seconds(0.2);
+    return true;
+  };
+  return run;
+}
+
+TEST_CASE("clocks 0.2 s apart: a navigator that is told to estimate them is as good as one with "
+          "right ones" *
+          doctest::test_suite("heavy")) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    Run right = car_run(400.0);
+    right.score_from_s = 250.0;
+    const Score by_right_clock = right(seed);
+    Run run = with_clock_off();
+    run.config.timing.estimate_clock = true;
+    const Score score = run(seed);
+    // What is left of the offset is 10 ms, 0.2 m at 20 m/s, and its sigma is claimed.
+    CHECK(score.largest_m < by_right_clock.largest_m + 0.8);
+    CHECK(score.worst_position < kHonest);
+  }
+}
+
+TEST_CASE("clocks 0.2 s apart, not estimated: once they are told of, the claims have it in them" *
+          doctest::test_suite("heavy")) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    const Score score = with_clock_off()(seed);
+    CHECK(score.rms_ratio() < 2.0);
+    CHECK(score.worst_position < kHonest);
+  }
+}
+
 }  // namespace
 }  // namespace leeway
