@@ -17,6 +17,7 @@
 #include "sim/analysis/doubling/end_analysis.hpp"
 #include "sim/analysis/doubling/repeated_fixes.hpp"
 #include "sim/analysis/scene_covariance.hpp"
+#include "sim/analysis/scored_fixes.hpp"
 
 namespace leeway::sim {
 namespace {
@@ -26,6 +27,7 @@ using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then t
 
 constexpr double kSettledRelative = 1e-3;
 constexpr double kSamePhase = 1e-6;
+constexpr double kMostOfAFix = 0.1;
 
 /// A navigator takes positions as good as carrier phase gives them for white.
 double believed_correlation_s(const Scene& scene) {
@@ -38,15 +40,6 @@ double believed_correlation_s(const Scene& scene) {
 struct Window {
   long index{-1};  // counted back from the end
   Variances largest{Variances::Zero()};
-};
-
-/// What the fixes that count add up to.
-struct FixSums {
-  int fixes{0};
-  Eigen::Vector3d claimed_sum_n_m2{Eigen::Vector3d::Zero()};
-  Eigen::Vector3d true_sum_n_m2{Eigen::Vector3d::Zero()};
-  double worst{0.0};  // over what is allowed
-  CovarianceAnalysis result{};
 };
 
 template <int kParameters>
@@ -62,12 +55,23 @@ class Analysis {
         correlation_s_(believed_correlation_s(scene)),
         pair_(scene, config.by_source, track.aiding()),
         window_s_(repeating_part_s(scene)),
-        scored_s_(scored_part_s(scene)) {
+        scored_s_(scored_part_s(scene)),
+        scored_(scene, track) {
     if (!pair_.takes_stretches()) stretches_ = nullptr;
   }
 
+  /// Takes the fixes of a step as one, where all that follow the filter's settling are looked at.
+  void take_steps_of_fixes() {
+    if (scene_.gnss.settle_s == 0.0 || !scene_.gnss.outages.empty()) return;
+    const double fixes = track_.step_s() / scene_.gnss.interval_s;
+    fixes_in_one_ = std::max(static_cast<int>(fixes + kSamePhase), 1);
+  }
+
   void walk() {
+    int waiting = 0;
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
+      if (++waiting < fixes_by(t_s)) continue;
+      waiting = 0;
       if (t_s < repeated_until_s_) {
         ++fixes_;
         continue;
@@ -76,15 +80,17 @@ class Analysis {
       if (arrival_s > scene_.duration_s) break;
       now_s_ = advance(pair_, now_s_, t_s);
       enter_window(arrival_s);
-      score(arrival_s);
-      update();
+      take_fix(arrival_s);
+      if (is_coarse_) return;
       if constexpr (kParameters == 0) repeat();
     }
     if (config_.observer) advance(pair_, now_s_, scene_.duration_s);
   }
 
-  CovarianceAnalysis run() {
+  /// @returns none where fixes may not be taken together
+  std::optional<CovarianceAnalysis> run() {
     walk();
+    if (is_coarse_) return {};
     return finished();
   }
 
@@ -110,47 +116,62 @@ class Analysis {
             pair.truth()};
   }
 
-  /// The error at the arrival of the fix of now, before it is used.
-  void score(double arrival_s) {
+  /// The fix of now, or as many as one that stands for them ends with.
+  void take_fix(double arrival_s) {
+    const int fixes = fixes_by(now_s_);
     Variances variances;
     variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
     window_.largest = window_.largest.max(variances);
-    if (!counts(arrival_s) && !config_.observer) return;
-    if (arrival_s == now_s_) {
-      score(pair_, now_s_);
-    } else {
-      SceneCovariance<kParameters> ahead = pair_;
-      score(ahead, advance(ahead, now_s_, arrival_s));
+    const bool is_scored = counts(arrival_s);
+    if (fixes > 1 && is_scored) return take_fixes(fixes, arrival_s);
+    if (is_scored || config_.observer) {
+      at_arrival(arrival_s, [this](const SceneCovariance<kParameters>& pair, double t_s) {
+        score(pair, point(pair, t_s, Moment::kBeforeFix), last_fix_s_);
+      });
     }
+    update(fixes);
   }
 
-  void score(const SceneCovariance<kParameters>& pair, double t_s) {
-    const CovariancePoint before = point(pair, t_s, Moment::kBeforeFix);
+  /// Calls f with the covariance at the arrival of the fix of now, before it is used.
+  template <class F>
+  void at_arrival(double arrival_s, F&& f) {
+    if (arrival_s == now_s_) return f(pair_, now_s_);
+    SceneCovariance<kParameters> ahead = pair_;
+    const double t_s = advance(ahead, now_s_, arrival_s);
+    f(ahead, t_s);
+  }
+
+  /// The error before fixes that are taken as one: what they make smaller together they do bit by
+  /// bit, so that in the mean about half of it is left.
+  void take_fixes(int fixes, double arrival_s) {
+    CovariancePoint before;
+    at_arrival(arrival_s, [&](const SceneCovariance<kParameters>& pair, double t_s) {
+      before = point(pair, t_s, Moment::kBeforeFix);
+    });
+    const ErrorMatrix claimed = pair_.claimed();
+    const ErrorMatrix truth = pair_.truth();
+    const double fix_before_s = now_s_ - scene_.gnss.interval_s;
+    update(fixes);
+    const double gone = 0.5 * (fixes - 1) / fixes;
+    const ErrorMatrix less_claimed = claimed - pair_.claimed();
+    const ErrorMatrix less_truth = truth - pair_.truth();
+    before.claimed -= gone * less_claimed;
+    before.truth -= gone * less_truth;
+    score(pair_, before, fix_before_s);
+    const auto changes = [](const ErrorMatrix& less, const ErrorMatrix& P) {
+      return less.diagonal().segment<3>(kDr).cwiseAbs().sum() >
+             kMostOfAFix * P.diagonal().segment<3>(kDr).sum();
+    };
+    is_coarse_ = is_coarse_ || changes(less_claimed, claimed) || changes(less_truth, truth);
+  }
+
+  void score(const SceneCovariance<kParameters>& pair, const CovariancePoint& before,
+             double last_fix_s) {
     if (config_.observer) config_.observer(before);
-    if (!counts(t_s)) return;
-    const ErrorBeforeFix claimed = size_of(before, before.claimed, score_.claimed_sum_n_m2);
-    const ErrorBeforeFix truth = size_of(before, before.truth, score_.true_sum_n_m2);
-    ++score_.fixes;
-    CovarianceAnalysis& r = score_.result;
-    r.claimed_errors.add(claimed);
-    r.true_errors.add(truth);
-    const AllowedError allowed = scene_.limit.allowed();
-    if (truth.over(allowed) <= score_.worst) return;
-    score_.worst = truth.over(allowed);
-    r.true_m = truth.error_m;
-    r.allowed_m = allowed.after_m(truth.distance_m);
-    r.worst_s = t_s;
-    r.worst = before;
-    if (!config_.by_source) return;
-    r.error_budget = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
-  }
-
-  /// @param sum_n_m2  gets the variances along north, east, down
-  ErrorBeforeFix size_of(const CovariancePoint& point, const ErrorMatrix& P,
-                         Eigen::Vector3d& sum_n_m2) const {
-    const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, P.block<3, 3>(kDr, kDr));
-    sum_n_m2 += P_n_m2.diagonal();
-    return error_before_fix(scene_, track_, std::max(last_fix_s_, 0.0), point.t_s, P_n_m2);
+    if (!counts(before.t_s)) return;
+    const bool is_worst = scored_.add(before, std::max(last_fix_s, 0.0));
+    if (!is_worst || !config_.by_source) return;
+    error_budget_ = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
   }
 
   /// Which stretch of the scene a fix belongs to, counted back from the end. One on the border of
@@ -183,16 +204,13 @@ class Analysis {
   }
 
   CovarianceAnalysis finished() {
-    if (score_.fixes == 0) {
+    if (scored_.empty()) {
       throw Error("scene '" + scene_.name + "': no fix in its last " + std::to_string(scored_s_) +
                   " s: shorten the fix interval or move the outages");
     }
     compare_with_previous();
-    CovarianceAnalysis r = score_.result;
-    r.claimed_m = r.claimed_errors.worst(scene_.limit.allowed()).error_m;
-    r.claimed_drms_m = std::sqrt(score_.claimed_sum_n_m2.head<2>().sum() / score_.fixes);
-    r.true_rms_n_m = (score_.true_sum_n_m2 / score_.fixes).cwiseSqrt();
-    r.true_drms_m = r.true_rms_n_m.head<2>().norm();
+    CovarianceAnalysis r = scored_.result();
+    r.error_budget = error_budget_;
     r.window_s = scored_s_;
     r.fixes = fixes_;
     r.settled = settled_s_.has_value();
@@ -200,15 +218,17 @@ class Analysis {
     return r;
   }
 
-  void update() {
+  /// @param fixes  that are taken as one
+  void update(int fixes) {
     const TruthPoint truth = track_.truth(scene_.trajectory, now_s_);
-    const double since_s = now_s_ - last_fix_s_;
+    const double since_s = (now_s_ - last_fix_s_) / fixes;
     const double weight = gnss_position_weight(since_s, correlation_s_);
     last_fix_s_ = now_s_;
-    pair_.update(fix_rows(truth.nav, truth.omega_ib_b_radps, scene_.filter.lever_arm_b_m,
-                          scene_.gnss.errors, weight),
-                 held_at(since_s), now_s_);
-    ++fixes_;
+    FixRows rows = fix_rows(truth.nav, truth.omega_ib_b_radps, scene_.filter.lever_arm_b_m,
+                            scene_.gnss.errors, weight);
+    if (fixes > 1) rows.repeat(fixes);
+    pair_.update(rows, held_at(since_s), now_s_);
+    fixes_ += static_cast<std::size_t>(fixes);
     if (config_.observer) config_.observer(point(pair_, now_s_, Moment::kAfterFix));
   }
 
@@ -234,6 +254,13 @@ class Analysis {
     previous_.reset();
   }
 
+  /// How many fixes are taken as one. The first of them are not: the filter has yet to come to
+  /// them.
+  int fixes_by(double t_s) const {
+    const double apart_s = (fixes_in_one_ + 0.5) * scene_.gnss.interval_s;
+    return t_s > scene_.gnss.settle_s + apart_s ? fixes_in_one_ : 1;
+  }
+
   /// What the navigator does not let a fix tell: the heading at rest, or after a while of even
   /// motion.
   Held held_at(double since_s) const {
@@ -257,9 +284,12 @@ class Analysis {
   double last_fix_s_{-std::numeric_limits<double>::infinity()};  // the first fix has weight 1
   double repeated_until_s_{0.0};
   bool has_tried_to_repeat_{false};
+  int fixes_in_one_{1};
+  bool is_coarse_{false};
   std::size_t fixes_{0};
   Window window_{};
-  FixSums score_{};
+  ScoredFixes scored_;
+  ErrorBudget error_budget_{};
   std::optional<Variances> previous_{};
   std::optional<double> settled_s_{};
 };
@@ -304,13 +334,20 @@ void follow(const Scene& scene, const ErrorTrack& track,
 
 CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
                            const CovarianceConfig& config) {
-  return with_analysis(scene, track, config, nullptr, [](auto analysis) { return analysis.run(); });
+  return *with_analysis(scene, track, config, nullptr,
+                        [](auto analysis) { return analysis.run(); });
 }
 
 CovarianceAnalysis analyze_end(const Scene& scene, Stretches& stretches) {
   const CovarianceConfig config;
-  return with_analysis(scene, stretches.track(), config, &stretches,
-                       [](auto analysis) { return analysis.run(); });
+  const auto run = [&](bool takes_steps) {
+    return with_analysis(scene, stretches.track(), config, &stretches, [&](auto analysis) {
+      if (takes_steps) analysis.take_steps_of_fixes();
+      return analysis.run();
+    });
+  };
+  if (const auto result = run(true)) return *result;
+  return *run(false);
 }
 
 }  // namespace leeway::sim

@@ -42,6 +42,7 @@ template <int kFilters, int kParameters = 0>
 struct RowGain {
   int row{};
   double per_sigma{};
+  double readings{1.0};  ///< whose mean this is
   Eigen::Matrix<double, kErrorStates + kParameters, 1> h =
       Eigen::Matrix<double, kErrorStates + kParameters, 1>::Zero();
   ErrorGains<kFilters, kParameters> K{ErrorGains<kFilters, kParameters>::Zero()};
@@ -167,7 +168,7 @@ class SourceCovariance {
       cross.col(i) = P.template middleCols<kOwn>(i * kOwn) * gain.h;
     }
     Eigen::Matrix<double, kFilters, kFilters> variance = measured(gain.h, cross);
-    variance.array() += row_variance(gain.row) * per_sigma * per_sigma;
+    variance.array() += row_variance(gain.row) * per_sigma * per_sigma / gain.readings;
     for (MarkovSource<kFilters, kParameters>& source : processes_) {
       auto innovation_g = measured(gain.h, source.S);  // E[innovation g^T]
       if (source.enters_at == MarkovSource<kFilters, kParameters>::kFixes && gain.row < 3) {

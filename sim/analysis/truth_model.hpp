@@ -87,7 +87,7 @@ class TruthModel {
   void update(const FixRows& fix, const FixGains<kFilters, kParameters>& gains) {
     constexpr int kOwn = kErrorStates + kParameters;
     for (int row = 0; row < fix.H.rows(); ++row) {
-      RowGain<kFilters, kParameters> gain{row, fix.per_sigma(row)};
+      RowGain<kFilters, kParameters> gain{row, fix.per_sigma(row), fix.fixes};
       gain.h.template head<kErrorStates>() = fix.H.row(row).transpose();
       for (int i = 0; i < kFilters; ++i) {
         gain.K.col(i).template segment<kOwn>(i * kOwn) =
