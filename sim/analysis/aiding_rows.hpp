@@ -12,6 +12,7 @@
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/analysis/fix_rows.hpp"
+#include "sim/analysis/motion_samples.hpp"
 
 namespace leeway::sim {
 
@@ -28,7 +29,7 @@ struct AidingRow {
 /// at its end, with the noise of their mean.
 class SceneAiding {
  public:
-  SceneAiding(const Scene& scene, double step_s);
+  SceneAiding(const Scene& scene, const MotionSamples& motion);
 
   bool has_rows() const { return !rows_.empty(); }
 

@@ -58,10 +58,12 @@ std::vector<sim::AllowedError> limits_to_solve(const IntervalChoice& choice,
 }
 
 void solve_limits(SolvedImu& imu, const std::vector<sim::AllowedError>& limits,
-                  const std::function<void(double)>& progress, Json& series) {
+                  sim::SceneTracks& tracks, const std::function<void(double)>& progress,
+                  Json& series) {
   std::map<double, std::array<double, 2>> errors_m;  // by interval
   SeriesTable free_inertial({"t_s", "true_m"});
   sim::IntervalConfig config;
+  config.tracks = &tracks;
   config.observer = [&errors_m](double interval_s, const sim::CovarianceAnalysis& analysis) {
     errors_m[interval_s] = {analysis.true_m, analysis.claimed_m};
   };
@@ -123,7 +125,7 @@ bool have_same_aiding(const sim::SceneVehicle& a, const sim::SceneVehicle& b) {
 }
 
 /// @pre the scene's own limit is among those that are solved
-void solve_aiding(SolvedImu& imu) {
+void solve_aiding(SolvedImu& imu, sim::SceneTracks& tracks) {
   if (!imu.scene.vehicle) return;
   Progress bar("aiding");
   const sim::AllowedError own = imu.scene.limit.allowed();
@@ -136,6 +138,7 @@ void solve_aiding(SolvedImu& imu) {
     sim::IntervalConfig config;
     config.tolerance = 1e-2;
     config.with_step_effect = false;
+    config.tracks = &tracks;
     const bool is_the_scenes = have_same_aiding(vehicle, *imu.scene.vehicle);
     imu.aided.push_back(
         {name, is_the_scenes,
@@ -235,6 +238,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
   const std::vector<sim::AllowedError> limits = limits_to_solve(choice, own.limit);
   const std::vector<sim::Scene> scenes = scenes_to_solve(choice.scene, own);
   std::vector<SolvedImu> solved;
+  sim::SceneTracks tracks;
   Progress bar("interval");
   for (const sim::Scene& scene : scenes) {
     const auto progress = [&](double fraction) {
@@ -243,7 +247,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
     };
     SolvedImu imu{scene};
     if (scene.gnss.outages.empty()) {
-      solve_limits(imu, limits, progress, series);
+      solve_limits(imu, limits, tracks, progress, series);
     } else {
       imu.coasts = sim::coasts(scene, sim::error_track(scene), scene.limit.allowed());
     }
@@ -251,7 +255,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
   }
   if (!own.gnss.outages.empty()) return solved;
   for (SolvedImu& imu : solved) {
-    if (scenes.size() == 1 || imu.scene.imu_name == own.imu_name) solve_aiding(imu);
+    if (scenes.size() == 1 || imu.scene.imu_name == own.imu_name) solve_aiding(imu, tracks);
     if (choice.with_sensitivity) solve_sensitivity(imu);
     if (choice.confirm_trials > 0) confirm(imu, choice, ranks);
   }
