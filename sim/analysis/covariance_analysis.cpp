@@ -23,11 +23,12 @@ namespace leeway::sim {
 namespace {
 
 using Moment = CovariancePoint::Moment;
-using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;  // claimed, then true
 
-constexpr double kSettledRelative = 1e-3;
 constexpr double kSamePhase = 1e-6;
-constexpr double kMostOfAFix = 0.1;
+/// What fixes that are taken as one may take off the variance of the position: the sigma between
+/// them, taken for the mean, is then wrong by 2e-4.
+constexpr double kMostOfAFix = 0.05;
+constexpr int kMostSteps = 2;
 
 /// A navigator takes positions as good as carrier phase gives them for white.
 double believed_correlation_s(const Scene& scene) {
@@ -36,15 +37,11 @@ double believed_correlation_s(const Scene& scene) {
   return is_white ? 0.0 : scene.filter.gnss_correlation_s;
 }
 
-/// The extremes of a stretch of the scene, to be compared with those of the next.
-struct Window {
-  long index{-1};  // counted back from the end
-  Variances largest{Variances::Zero()};
-};
-
 template <int kParameters>
 class Analysis {
  public:
+  static constexpr int kOfVehicle = kParameters;
+
   /// @param stretches  of the track, when only the scene's end matters
   Analysis(const Scene& scene, const ErrorTrack& track, const CovarianceConfig& config,
            Stretches* stretches = nullptr)
@@ -54,23 +51,36 @@ class Analysis {
         config_(config),
         correlation_s_(believed_correlation_s(scene)),
         pair_(scene, config.by_source, track.aiding()),
-        window_s_(repeating_part_s(scene)),
         scored_s_(scored_part_s(scene)),
+        settling_(scene),
         scored_(scene, track) {
     if (!pair_.takes_stretches()) stretches_ = nullptr;
   }
 
-  /// Takes the fixes of a step as one, where all that follow the filter's settling are looked at.
-  void take_steps_of_fixes() {
+  /// Takes the fixes of a step as one, or of some steps of steady motion, where all that follow the
+  /// filter's settling are looked at.
+  void take_fixes_of(int most_steps) {
+    const bool all_are_seen = scene_.gnss.settle_s > 0.0 && scene_.gnss.outages.empty();
+    most_steps_ = all_are_seen ? most_steps : 0;
+  }
+
+  /// Begins with the filter settled; one that is yet to be known is made on the way.
+  void begin_with(std::optional<SettledFilter<kParameters>>& settled) {
     if (scene_.gnss.settle_s == 0.0 || !scene_.gnss.outages.empty()) return;
-    const double fixes = track_.step_s() / scene_.gnss.interval_s;
-    fixes_in_one_ = std::max(static_cast<int>(fixes + kSamePhase), 1);
+    settled_ = &settled;
+    if (!settled) return;
+    pair_ = settled->pair;
+    for (const BeforeFix& fix : settled->fixes) settling_.see(fix);
+    fixes_ = settled->fixes.size();
+    now_s_ = last_fix_s_ = settled->fixes.back().t_s;
   }
 
   void walk() {
     int waiting = 0;
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
-      if (++waiting < fixes_by(t_s)) continue;
+      if (t_s <= last_fix_s_) continue;
+      if (waiting == 0) fixes_in_one_ = fixes_after(last_fix_s_);
+      if (++waiting < fixes_in_one_) continue;
       waiting = 0;
       if (t_s < repeated_until_s_) {
         ++fixes_;
@@ -78,8 +88,8 @@ class Analysis {
       }
       const double arrival_s = t_s + scene_.gnss.latency_s;
       if (arrival_s > scene_.duration_s) break;
+      keep_settled(t_s);
       now_s_ = advance(pair_, now_s_, t_s);
-      enter_window(arrival_s);
       take_fix(arrival_s);
       if (is_coarse_) return;
       if constexpr (kParameters == 0) repeat();
@@ -118,10 +128,11 @@ class Analysis {
 
   /// The fix of now, or as many as one that stands for them ends with.
   void take_fix(double arrival_s) {
-    const int fixes = fixes_by(now_s_);
-    Variances variances;
-    variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
-    window_.largest = window_.largest.max(variances);
+    const int fixes = fixes_in_one_;
+    BeforeFix fix{now_s_, arrival_s};
+    fix.variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
+    settling_.see(fix);
+    if (settled_ != nullptr && !*settled_) settling_fixes_.push_back(fix);
     const bool is_scored = counts(arrival_s);
     if (fixes > 1 && is_scored) return take_fixes(fixes, arrival_s);
     if (is_scored || config_.observer) {
@@ -174,33 +185,13 @@ class Analysis {
     error_budget_ = pair.error_budget(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
   }
 
-  /// Which stretch of the scene a fix belongs to, counted back from the end. One on the border of
-  /// two counts for the later one.
-  long stretch_of(double arrival_s, double length_s) const {
-    const double left = (scene_.duration_s - arrival_s) / length_s;
-    return std::max(0L, static_cast<long>(std::ceil(left - 1e-9)) - 1);
-  }
+  bool counts(double arrival_s) const { return stretch_of(scene_, arrival_s, scored_s_) == 0; }
 
-  bool counts(double arrival_s) const { return stretch_of(arrival_s, scored_s_) == 0; }
-
-  void enter_window(double arrival_s) {
-    const long index = stretch_of(arrival_s, window_s_);
-    if (index == window_.index) return;
-    if (window_.index >= 0) {
-      compare_with_previous();
-      previous_ = window_.largest;
-    }
-    window_ = Window{};
-    window_.index = index;
-  }
-
-  void compare_with_previous() {
-    // Variances change twice as much as sigmas.
-    const bool repeats =
-        previous_ &&
-        ((window_.largest - *previous_).abs() <= 2.0 * kSettledRelative * *previous_).all();
-    if (!repeats) settled_s_.reset();
-    if (repeats && !settled_s_) settled_s_ = now_s_;
+  /// @param t_s  of the next fix
+  void keep_settled(double t_s) {
+    if (settled_ == nullptr || *settled_ || settling_fixes_.empty()) return;
+    if (t_s <= scene_.gnss.settle_s) return;
+    settled_->emplace(SettledFilter<kParameters>{pair_, std::move(settling_fixes_)});
   }
 
   CovarianceAnalysis finished() {
@@ -208,13 +199,13 @@ class Analysis {
       throw Error("scene '" + scene_.name + "': no fix in its last " + std::to_string(scored_s_) +
                   " s: shorten the fix interval or move the outages");
     }
-    compare_with_previous();
+    const std::optional<double> settled_s = settling_.finish(now_s_);
     CovarianceAnalysis r = scored_.result();
     r.error_budget = error_budget_;
     r.window_s = scored_s_;
     r.fixes = fixes_;
-    r.settled = settled_s_.has_value();
-    r.settled_s = settled_s_.value_or(scene_.duration_s);
+    r.settled = settled_s.has_value();
+    r.settled_s = settled_s.value_or(scene_.duration_s);
     return r;
   }
 
@@ -241,7 +232,7 @@ class Analysis {
     const bool never_holds = scene_.estimator == SceneEstimator::kEkf;
     if (!never_holds || !scene_.gnss.outages.empty()) return;
     // What was moved or has not settled yet has two parts more to be forgotten in.
-    const double followed_s = std::max(scored_s_, 2.0 * window_s_);
+    const double followed_s = std::max(scored_s_, 2.0 * settling_.window_s());
     const FixSpan span{now_s_, scene_.duration_s - scene_.gnss.latency_s - followed_s, interval_s,
                        gnss_position_weight(interval_s, correlation_s_)};
     const auto pattern = fix_pattern(scene_, track_, span);
@@ -250,15 +241,20 @@ class Analysis {
     const double fixes = std::floor((now_s_ - span.from_s) / interval_s + kSamePhase);
     last_fix_s_ = span.from_s + fixes * interval_s;
     repeated_until_s_ = last_fix_s_ + 0.5 * interval_s;
-    window_ = Window{};
-    previous_.reset();
+    settling_.forget();
   }
 
-  /// How many fixes are taken as one. The first of them are not: the filter has yet to come to
-  /// them.
-  int fixes_by(double t_s) const {
-    const double apart_s = (fixes_in_one_ + 0.5) * scene_.gnss.interval_s;
-    return t_s > scene_.gnss.settle_s + apart_s ? fixes_in_one_ : 1;
+  /// How many fixes after this one are taken as one. The first of them are not: the filter has yet
+  /// to come to them.
+  int fixes_after(double fix_s) const {
+    const double step_s = track_.step_s();
+    if (most_steps_ == 0 || fix_s < scene_.gnss.settle_s + most_steps_ * step_s) return 1;
+    const auto run_at = [&](double t_s) {
+      return track_.run_of(static_cast<std::size_t>(t_s / step_s + kSamePhase) % track_.steps());
+    };
+    int steps = most_steps_;
+    while (steps > 1 && run_at(fix_s) != run_at(fix_s + steps * step_s)) steps /= 2;
+    return std::max(static_cast<int>(steps * step_s / scene_.gnss.interval_s + kSamePhase), 1);
   }
 
   /// What the navigator does not let a fix tell: the heading at rest, or after a while of even
@@ -278,20 +274,20 @@ class Analysis {
   const CovarianceConfig& config_;
   double correlation_s_;
   SceneCovariance<kParameters> pair_;
-  double window_s_;
   double scored_s_;
+  Settling settling_;
   double now_s_{0.0};
   double last_fix_s_{-std::numeric_limits<double>::infinity()};  // the first fix has weight 1
   double repeated_until_s_{0.0};
   bool has_tried_to_repeat_{false};
+  int most_steps_{0};
   int fixes_in_one_{1};
   bool is_coarse_{false};
   std::size_t fixes_{0};
-  Window window_{};
+  std::optional<SettledFilter<kParameters>>* settled_{nullptr};
+  std::vector<BeforeFix> settling_fixes_{};
   ScoredFixes scored_;
   ErrorBudget error_budget_{};
-  std::optional<Variances> previous_{};
-  std::optional<double> settled_s_{};
 };
 
 /// Calls f with the analysis that fits what the scene's filter estimates.
@@ -338,16 +334,20 @@ CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
                         [](auto analysis) { return analysis.run(); });
 }
 
-CovarianceAnalysis analyze_end(const Scene& scene, Stretches& stretches) {
+CovarianceAnalysis EndAnalysis::at(double interval_s) {
+  scene_.gnss.interval_s = interval_s;
+  if (const auto result = run(kMostSteps)) return *result;
+  if (const auto result = run(1)) return *result;
+  return *run(0);
+}
+
+std::optional<CovarianceAnalysis> EndAnalysis::run(int most_steps) {
   const CovarianceConfig config;
-  const auto run = [&](bool takes_steps) {
-    return with_analysis(scene, stretches.track(), config, &stretches, [&](auto analysis) {
-      if (takes_steps) analysis.take_steps_of_fixes();
-      return analysis.run();
-    });
-  };
-  if (const auto result = run(true)) return *result;
-  return *run(false);
+  return with_analysis(scene_, track_, config, &stretches_, [&](auto analysis) {
+    analysis.begin_with(std::get<Settled<decltype(analysis)::kOfVehicle>>(settled_));
+    analysis.take_fixes_of(most_steps);
+    return analysis.run();
+  });
 }
 
 }  // namespace leeway::sim

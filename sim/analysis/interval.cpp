@@ -77,9 +77,9 @@ class Solver {
 
   /// What halving the step changes. The last question: the track of whole steps is given up for it.
   void add_step_effects(std::vector<Interval>& answers) {
-    stretches_.reset();
+    analysis_.reset();
     track_ = tracks_.of(scene_, 0.5 * config_.covariance_step_s);
-    stretches_.emplace(scene_, *track_);
+    analysis_.emplace(scene_, *track_);
     known_.clear();
     for (Interval& answer : answers) {
       const bool is_never = answer.outcome == Interval::Outcome::kNever;
@@ -88,7 +88,7 @@ class Solver {
       if (interval_s <= 0.5 * config_.covariance_step_s) continue;
       auto found = known_.find(interval_s);
       if (found == known_.end()) {
-        found = known_.emplace(interval_s, analysis_at(interval_s, *stretches_)).first;
+        found = known_.emplace(interval_s, analysis_->at(interval_s)).first;
       }
       const double fine_m = found->second.true_errors.worst(answer.allowed()).error_m;
       answer.step_effect = std::abs(fine_m / answer.true_m - 1.0);
@@ -120,18 +120,12 @@ class Solver {
   }
 
  private:
-  CovarianceAnalysis analysis_at(double interval_s, Stretches& stretches) const {
-    Scene scene = scene_;
-    scene.gnss.interval_s = interval_s;
-    return analyze_end(scene, stretches);
-  }
-
   /// Every interval is analysed once, whatever limits ask for it.
   const CovarianceAnalysis& known(double log_interval) {
     const double interval_s = std::exp(log_interval);
     auto found = known_.find(interval_s);
     if (found == known_.end()) {
-      found = known_.emplace(interval_s, analysis_at(interval_s, *stretches_)).first;
+      found = known_.emplace(interval_s, analysis_->at(interval_s)).first;
       if (config_.observer) config_.observer(interval_s, found->second);
     }
     return found->second;
@@ -172,15 +166,17 @@ class Solver {
     return {below, above};
   }
 
-  /// Regula falsi with Illinois weights. @returns the last sample below the limit.
+  /// Regula falsi with Illinois weights, which aims at half the tolerance below the limit: there
+  /// one sample ends it. @returns the last sample below the limit.
   Sample narrow(Sample below, Sample above, const AllowedError& allowed) {
     double below_weight = 1.0;
     double above_weight = 1.0;
     for (int i = 0; i < kMostSecants; ++i) {
-      const double low = below_weight * below.log_excess;
-      const double high = above_weight * above.log_excess;
+      const double aim = -0.5 * config_.tolerance;
+      const double low = below_weight * (below.log_excess - aim);
+      const double high = above_weight * (above.log_excess - aim);
       const double width = above.log_interval - below.log_interval;
-      if (width < config_.tolerance || -low < config_.tolerance * below_weight) break;
+      if (width < config_.tolerance || -below.log_excess < config_.tolerance) break;
       // Halves where the two errors tell no slope.
       const double part = std::clamp(-low / (high - low), 0.0, 1.0);
       const Sample next =
@@ -213,7 +209,7 @@ class Solver {
   SceneTracks own_tracks_{};
   SceneTracks& tracks_;
   std::optional<ErrorTrack> track_;
-  std::optional<Stretches> stretches_{std::in_place, scene_, *track_};
+  std::optional<EndAnalysis> analysis_{std::in_place, scene_, *track_};
   double log_longest_;
   std::map<double, CovarianceAnalysis> known_{};  // by interval
 };

@@ -38,7 +38,10 @@ bool is_steady(const TruthPoint& start, const TruthPoint& middle, const TruthPoi
 class MotionSamples::Sampler {
  public:
   Sampler(MotionSamples& samples, const Trajectory& trajectory, std::size_t steps)
-      : samples_(samples), trajectory_(trajectory), steps_(steps), start_(truth_at(trajectory, 0.0)) {}
+      : samples_(samples),
+        trajectory_(trajectory),
+        steps_(steps),
+        start_(truth_at(trajectory, 0.0)) {}
 
   void sample() {
     while (step_ < steps_) {
@@ -99,8 +102,7 @@ class MotionSamples::Sampler {
   }
 
   void add_piece(const TruthPoint& truth, const MeanMotion& motion) {
-    samples_.pieces_.push_back(
-        {truth.nav.q_eb, truth.f_ib_b_mps2, truth.omega_ib_b_radps, motion});
+    samples_.pieces_.push_back({truth.nav.q_eb, truth.f_ib_b_mps2, truth.omega_ib_b_radps, motion});
   }
 
   void let_mean_follow(const TruthPoint& truth) {
@@ -160,8 +162,7 @@ const std::vector<TruthPoint>& MotionSamples::ends(const Trajectory& trajectory,
     const auto steps = static_cast<std::size_t>(std::floor(until_s / step_s_ + kSlack));
     ends_.reserve(steps + 1);
     for (std::size_t k = 0; k <= steps; ++k) {
-      ends_.push_back(
-          truth_at(trajectory, std::min(static_cast<double>(k) * step_s_, until_s)));
+      ends_.push_back(truth_at(trajectory, std::min(static_cast<double>(k) * step_s_, until_s)));
     }
   });
   return ends_;

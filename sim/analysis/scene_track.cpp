@@ -30,8 +30,7 @@ ErrorTrack SceneTracks::of(const Scene& scene, double step_s) {
                                 noise.tau_g_s};
   std::shared_ptr<const MotionSamples>& motion = motions_[config.step_s];
   if (!motion) {
-    motion =
-        std::make_shared<MotionSamples>(scene.trajectory, scene.duration_s, config.step_s);
+    motion = std::make_shared<MotionSamples>(scene.trajectory, scene.duration_s, config.step_s);
   }
   ErrorTrack track(motion, config);
   if (scene.vehicle || scene.estimator == SceneEstimator::kNavigator) {

@@ -41,9 +41,8 @@ Trajectory at_rest() { return static_trajectory({.duration_s = 14400.0}); }
 
 void check_against_steps(const Scene& scene, double tolerance) {
   const ErrorTrack track = error_track(scene);
-  Stretches stretches(scene, track);
   const CovarianceAnalysis stepped = analyze(scene, track);
-  const CovarianceAnalysis doubled = analyze_end(scene, stretches);
+  const CovarianceAnalysis doubled = EndAnalysis(scene, track).at(scene.gnss.interval_s);
   CAPTURE(scene.gnss.interval_s);
   CAPTURE(stepped.true_m);
   CAPTURE(doubled.true_m);

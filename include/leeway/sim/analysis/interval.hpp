@@ -19,7 +19,7 @@ struct IntervalConfig {
   double shortest_s{0.1};  ///< intervals from here to longest_interval_s() are tried
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
   double covariance_step_s{1.0};
-  bool with_step_effect{true};  ///< whether Interval::step_effect is wanted
+  bool with_step_effect{true};   ///< whether Interval::step_effect is wanted
   SceneTracks* tracks{nullptr};  ///< unless null, of this motion: shared with other questions
   /// Called with every interval that is analysed on the way, in no order.
   std::function<void(double interval_s, const CovarianceAnalysis&)> observer{};
