@@ -72,13 +72,13 @@ class Analysis {
     pair_ = settled->pair;
     for (const BeforeFix& fix : settled->fixes) settling_.see(fix);
     fixes_ = settled->fixes.size();
-    now_s_ = last_fix_s_ = settled->fixes.back().t_s;
+    now_s_ = last_fix_s_ = settled_until_s_ = settled->fixes.back().t_s;
   }
 
   void walk() {
     int waiting = 0;
     for (const double t_s : fix_times_s(scene_.gnss, scene_.duration_s)) {
-      if (t_s <= last_fix_s_) continue;
+      if (t_s <= settled_until_s_) continue;
       if (waiting == 0) fixes_in_one_ = fixes_after(last_fix_s_);
       if (++waiting < fixes_in_one_) continue;
       waiting = 0;
@@ -286,6 +286,7 @@ class Analysis {
   std::size_t fixes_{0};
   std::optional<SettledFilter<kParameters>>* settled_{nullptr};
   std::vector<BeforeFix> settling_fixes_{};
+  double settled_until_s_{0.0};
   ScoredFixes scored_;
   ErrorBudget error_budget_{};
 };

@@ -26,6 +26,7 @@ void validate(const Scene& scene, const std::vector<AllowedError>& limits,
   const double below_longest_s = std::nextafter(longest_interval_s(scene), 0.0);
   require("interval", "shortest_s, below the longest that the scene can be asked for,",
           config.shortest_s, between(0.01, below_longest_s));
+  require("interval", "first_guess_s", config.first_guess_s, kPositive);
   require("interval", "tolerance", config.tolerance, between(1e-6, 0.1));
 }
 
@@ -143,8 +144,12 @@ class Solver {
     const auto longer = [&](const Sample& s) {
       return sample(std::min(s.log_interval + std::log(kLongerBy), log_longest_), allowed);
     };
-    const double log_first = std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_);
-    Sample below = sample(log_first, allowed);
+    const auto guess = [&](double guess_s) {
+      return sample(std::clamp(std::log(guess_s), log_shortest, log_longest_), allowed);
+    };
+    Sample below = guess(config_.first_guess_s);
+    if (below.is_beyond()) below = guess(std::min(config_.first_guess_s, kFirstGuessS));
+    const double log_first = below.log_interval;
     Sample above = below;
     while (below.is_beyond() && below.log_interval > log_shortest) {
       above = below;
@@ -166,17 +171,15 @@ class Solver {
     return {below, above};
   }
 
-  /// Regula falsi with Illinois weights, which aims at half the tolerance below the limit: there
-  /// one sample ends it. @returns the last sample below the limit.
+  /// Regula falsi with Illinois weights. @returns the last sample below the limit.
   Sample narrow(Sample below, Sample above, const AllowedError& allowed) {
     double below_weight = 1.0;
     double above_weight = 1.0;
     for (int i = 0; i < kMostSecants; ++i) {
-      const double aim = -0.5 * config_.tolerance;
-      const double low = below_weight * (below.log_excess - aim);
-      const double high = above_weight * (above.log_excess - aim);
+      const double low = below_weight * below.log_excess;
+      const double high = above_weight * above.log_excess;
       const double width = above.log_interval - below.log_interval;
-      if (width < config_.tolerance || -below.log_excess < config_.tolerance) break;
+      if (width < config_.tolerance || -low < config_.tolerance * below_weight) break;
       // Halves where the two errors tell no slope.
       const double part = std::clamp(-low / (high - low), 0.0, 1.0);
       const Sample next =

@@ -34,7 +34,7 @@ ErrorTrack SceneTracks::of(const Scene& scene, double step_s) {
   }
   ErrorTrack track(motion, config);
   if (scene.vehicle || scene.estimator == SceneEstimator::kNavigator) {
-    track.set_aiding(std::make_shared<SceneAiding>(scene, *motion));
+    track.set_aiding(std::make_shared<SceneAiding>(scene, motion));
   }
   return track;
 }

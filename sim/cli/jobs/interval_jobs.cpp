@@ -16,6 +16,9 @@ namespace {
 /// IMU increments that checks nobody asked for may take, some five seconds' work of a processor.
 constexpr double kSpareIncrements = 3e6;
 
+/// Steps of the covariance that an answer to a hundredth may take: a day's course is steady.
+constexpr double kRoughSteps = 1e4;
+
 /// The scene with its own IMU. What the command line says of the biases and the range of a class is
 /// not said of it.
 sim::Scene own_scene(SceneChoice choice) {
@@ -132,17 +135,20 @@ void solve_aiding(SolvedImu& imu, sim::SceneTracks& tracks) {
   const auto answered = std::ranges::find(
       imu.limits, own, [](const SolvedLimit& answer) { return answer.interval.allowed(); });
   const auto sets = aiding_sets(*imu.scene.vehicle);
+  sim::IntervalConfig config;
+  config.tolerance = 1e-2;
+  config.with_step_effect = false;
+  config.tracks = &tracks;
+  config.covariance_step_s = std::max(1.0, imu.scene.duration_s / kRoughSteps);
   for (const auto& [name, vehicle] : sets) {
     sim::Scene scene = imu.scene;
     scene.vehicle = vehicle;
-    sim::IntervalConfig config;
-    config.tolerance = 1e-2;
-    config.with_step_effect = false;
-    config.tracks = &tracks;
     const bool is_the_scenes = have_same_aiding(vehicle, *imu.scene.vehicle);
-    imu.aided.push_back(
-        {name, is_the_scenes,
-         is_the_scenes ? answered->interval : solve_intervals(scene, {own}, config).front()});
+    const sim::Interval interval =
+        is_the_scenes ? answered->interval : solve_intervals(scene, {own}, config).front();
+    imu.aided.push_back({name, is_the_scenes, interval});
+    // More aiding does not shorten what less of it allows.
+    if (!std::isnan(interval.interval_s)) config.first_guess_s = interval.interval_s;
     bar.show(static_cast<double>(imu.aided.size()) / static_cast<double>(sets.size()));
   }
 }

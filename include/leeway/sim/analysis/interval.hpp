@@ -17,6 +17,8 @@ namespace leeway::sim {
 /// Options of solve_intervals().
 struct IntervalConfig {
   double shortest_s{0.1};  ///< intervals from here to longest_interval_s() are tried
+  /// Known to keep the limit as long as this one does: the answer with less aiding, say.
+  double first_guess_s{10.0};
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
   double covariance_step_s{1.0};
   bool with_step_effect{true};   ///< whether Interval::step_effect is wanted
