@@ -141,14 +141,18 @@ class Solver {
   /// the lower one keeps the limit, as far as the steps see it. They are the same for all limits.
   std::pair<Sample, Sample> bracket(const AllowedError& allowed) {
     const double log_shortest = std::log(config_.shortest_s);
+    const auto guess = [&](double log_guess) {
+      return sample(std::clamp(log_guess, log_shortest, log_longest_), allowed);
+    };
+    // On the same steps whatever is guessed: between them the error may rise and fall.
+    const double log_longer = std::log(kLongerBy);
     const auto longer = [&](const Sample& s) {
-      return sample(std::min(s.log_interval + std::log(kLongerBy), log_longest_), allowed);
+      return sample(std::min(s.log_interval + log_longer, log_longest_), allowed);
     };
-    const auto guess = [&](double guess_s) {
-      return sample(std::clamp(std::log(guess_s), log_shortest, log_longest_), allowed);
-    };
-    Sample below = guess(config_.first_guess_s);
-    if (below.is_beyond()) below = guess(std::min(config_.first_guess_s, kFirstGuessS));
+    const double log_known = std::log(config_.first_guess_s / kFirstGuessS);
+    const double steps = std::max(std::floor(log_known / log_longer), 0.0);
+    Sample below = guess(std::log(kFirstGuessS) + steps * log_longer);
+    if (below.is_beyond()) below = guess(std::log(kFirstGuessS));
     const double log_first = below.log_interval;
     Sample above = below;
     while (below.is_beyond() && below.log_interval > log_shortest) {
