@@ -28,7 +28,7 @@ constexpr double kSamePhase = 1e-6;
 /// What fixes that are taken as one may take off the variance of the position: the sigma between
 /// them, taken for the mean, is then wrong by 2e-4.
 constexpr double kMostOfAFix = 0.05;
-constexpr int kMostSteps = 2;
+constexpr int kStepsAsOne = 2;
 
 /// A navigator takes positions as good as carrier phase gives them for white.
 double believed_correlation_s(const Scene& scene) {
@@ -70,7 +70,7 @@ class Analysis {
     settled_ = &settled;
     if (!settled) return;
     pair_ = settled->pair;
-    for (const BeforeFix& fix : settled->fixes) settling_.see(fix);
+    for (const VariancesBefore& fix : settled->fixes) settling_.see(fix);
     fixes_ = settled->fixes.size();
     now_s_ = last_fix_s_ = settled_until_s_ = settled->fixes.back().t_s;
   }
@@ -129,7 +129,7 @@ class Analysis {
   /// The fix of now, or as many as one that stands for them ends with.
   void take_fix(double arrival_s) {
     const int fixes = fixes_in_one_;
-    BeforeFix fix{now_s_, arrival_s};
+    VariancesBefore fix{now_s_, arrival_s};
     fix.variances << pair_.claimed().diagonal(), pair_.truth().diagonal();
     settling_.see(fix);
     if (settled_ != nullptr && !*settled_) settling_fixes_.push_back(fix);
@@ -285,7 +285,7 @@ class Analysis {
   bool is_coarse_{false};
   std::size_t fixes_{0};
   std::optional<SettledFilter<kParameters>>* settled_{nullptr};
-  std::vector<BeforeFix> settling_fixes_{};
+  std::vector<VariancesBefore> settling_fixes_{};
   double settled_until_s_{0.0};
   ScoredFixes scored_;
   ErrorBudget error_budget_{};
@@ -319,7 +319,7 @@ CovarianceAnalysis analyze(const Scene& scene, const ErrorTrack& track,
 
 CovarianceAnalysis EndAnalysis::at(double interval_s) {
   scene_.gnss.interval_s = interval_s;
-  if (const auto result = run(kMostSteps)) return *result;
+  if (const auto result = run(kStepsAsOne)) return *result;
   if (const auto result = run(1)) return *result;
   return *run(0);
 }

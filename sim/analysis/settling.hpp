@@ -16,8 +16,8 @@ namespace leeway::sim {
 /// Claimed, then true.
 using Variances = Eigen::Array<double, 2 * kErrorStates, 1>;
 
-/// The variances before a fix.
-struct BeforeFix {
+/// The variances just before a fix.
+struct VariancesBefore {
   double t_s{};
   double arrival_s{};
   Variances variances{Variances::Zero()};
@@ -36,7 +36,7 @@ class Settling {
 
   double window_s() const { return window_s_; }
 
-  void see(const BeforeFix& fix) {
+  void see(const VariancesBefore& fix) {
     const long index = stretch_of(scene_, fix.arrival_s, window_s_);
     if (index != window_.index) {
       if (window_.index >= 0) {

@@ -18,7 +18,7 @@ namespace leeway::sim {
 template <int kParameters>
 struct SettledFilter {
   SceneCovariance<kParameters> pair;
-  std::vector<BeforeFix> fixes{};
+  std::vector<VariancesBefore> fixes{};
 };
 
 /// As analyze(), with less work. What lies between two fixes is taken at once; where the motion

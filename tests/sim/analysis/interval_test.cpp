@@ -104,7 +104,7 @@ TEST_CASE("an answer does not depend on what else is asked") {
   }
 }
 
-TEST_CASE("a first guess that keeps the limit leads to the same answer, one that does not is none") {
+TEST_CASE("a first guess leads to the same answer, whether it keeps the limit or breaks it") {
   Scene scene = defined_case(ImuClass::kTactical);
   scene.duration_s = 2400.0;
   const double plain_s = solve_intervals(scene, {30.0}).front().interval_s;
