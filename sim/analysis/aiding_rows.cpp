@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "leeway/navigator/aidings.hpp"
 
@@ -16,33 +17,32 @@ constexpr double kEndSlack = 1e-6;  // of a step
 
 }  // namespace
 
-SceneAiding::SceneAiding(const Scene& scene, double step_s) : step_s_(step_s) {
+SceneAiding::SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples> motion)
+    : motion_(std::move(motion)),
+      ends_(motion_->ends(scene.trajectory, scene.duration_s)),
+      step_s_(motion_->step_s()) {
   if (scene.vehicle) believed_ = vehicle_state(scene.vehicle->config).value;
-  const auto steps = static_cast<std::size_t>(std::floor(scene.duration_s / step_s + kEndSlack));
-  samples_.reserve(steps + 1);
+  samples_.reserve(ends_.size());
   double still_s = kToRestS;  // a scene that begins at rest has been
   double even_s = 0.0;
   Eigen::Vector3d v_e_mps = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k <= steps; ++k) {
-    const TruthPoint truth =
-        truth_at(scene.trajectory, std::min(static_cast<double>(k) * step_s, scene.duration_s));
+  for (std::size_t k = 0; k < ends_.size(); ++k) {
+    const TruthPoint& truth = ends_[k];
     const bool is_still = truth.nav.v_e_mps.norm() < kStillMps;
-    const bool is_even = k == 0 || (truth.nav.v_e_mps - v_e_mps).norm() < kEvenMps2 * step_s;
-    if (k > 0) still_s += step_s;
+    const bool is_even = k == 0 || (truth.nav.v_e_mps - v_e_mps).norm() < kEvenMps2 * step_s_;
+    if (k > 0) still_s += step_s_;
     if (!is_still) still_s = 0.0;
-    even_s = is_even ? even_s + step_s : 0.0;
+    even_s = is_even ? even_s + step_s_ : 0.0;
     v_e_mps = truth.nav.v_e_mps;
-    samples_.push_back({{truth.nav, {}},
-                        still_s >= kToRestS,
-                        static_cast<float>(even_s),
+    samples_.push_back({still_s >= kToRestS, static_cast<float>(even_s),
                         static_cast<std::uint32_t>(rows_.size())});
     if (k > 0 && scene.vehicle) add_rows(scene, truth);
   }
 }
 
-const SceneAiding::Sample& SceneAiding::sample_at(double t_s) const {
+std::size_t SceneAiding::index_at(double t_s) const {
   const auto k = static_cast<std::size_t>(std::max(t_s / step_s_ + kEndSlack, 0.0));
-  return samples_[std::min(k, samples_.size() - 1)];
+  return std::min(k, samples_.size() - 1);
 }
 
 std::span<const AidingRow> SceneAiding::rows(double end_s) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "leeway/model/vehicle_state.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/analysis/fix_rows.hpp"
+#include "sim/analysis/motion_samples.hpp"
 
 namespace leeway::sim {
 
@@ -28,7 +30,7 @@ struct AidingRow {
 /// at its end, with the noise of their mean.
 class SceneAiding {
  public:
-  SceneAiding(const Scene& scene, double step_s);
+  SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples> motion);
 
   bool has_rows() const { return !rows_.empty(); }
 
@@ -42,22 +44,24 @@ class SceneAiding {
   double even_s(double t_s) const { return sample_at(t_s).even_s; }
 
   /// The truth at the last end of a step.
-  const Estimate& truth(double t_s) const { return sample_at(t_s).truth; }
+  Estimate truth(double t_s) const { return {ends_[index_at(t_s)].nav, {}}; }
 
  private:
   struct Sample {
-    Estimate truth{};
     bool rests{};
     float even_s{};
     std::uint32_t first_row{};
   };
 
-  const Sample& sample_at(double t_s) const;
+  std::size_t index_at(double t_s) const;
+  const Sample& sample_at(double t_s) const { return samples_[index_at(t_s)]; }
   void add_rows(const Scene& scene, const TruthPoint& truth);
   void add(RowKind kind, const Measurement& m, double interval_s, double seconds, Held held);
   void add_constraints(const Scene& scene, const TruthPoint& truth);
   void add_sensors(const Scene& scene, const TruthPoint& truth);
 
+  std::shared_ptr<const MotionSamples> motion_;
+  const std::vector<TruthPoint>& ends_;
   double step_s_;
   VehicleVector believed_{VehicleVector::Zero()};
   std::vector<Sample> samples_{};

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "leeway/earth/earth.hpp"
-#include "leeway/ekf/inertial_estimate.hpp"
-#include "lib/earth/field_walk.hpp"
+#include "sim/analysis/motion_samples.hpp"
 
 namespace leeway::sim {
 namespace {
 
-constexpr int kPiecesPerStep = 10;
-constexpr double kSlack = 1e-7;  // of a step: times this close are the same
+constexpr double kSlack = MotionSamples::kSlack;
 
 /// What the parameters add to the error per second. Signs by error_state.hpp: a bias b enters as
 /// -C_eb b, and a matrix error acts as the bias M f or M omega.
@@ -26,172 +23,44 @@ ParameterMatrix parameter_input(const Eigen::Matrix3d& C_eb, const Eigen::Vector
   return input;
 }
 
-Eigen::Vector3d acceleration_e(const TruthPoint& truth) {
-  return truth.nav.q_eb * truth.f_ib_b_mps2 + gravity_e(GravityModel::kNormal, truth.nav.r_e_m);
-}
-
-/// Whether one truth may stand for a stretch of time.
-bool is_steady(const TruthPoint& start, const TruthPoint& middle, const TruthPoint& end,
-               double dt_s) {
-  constexpr double kTurnRad = 1e-4;
-  constexpr double kRateRadps = 1e-5;
-  constexpr double kForceMps2 = 1e-3;
-  const auto differ = [](const auto& a, const auto& b, double by) { return (a - b).norm() > by; };
-  if (differ(start.omega_ib_b_radps, middle.omega_ib_b_radps, kRateRadps)) return false;
-  if (differ(end.omega_ib_b_radps, middle.omega_ib_b_radps, kRateRadps)) return false;
-  if (differ(start.f_ib_b_mps2, middle.f_ib_b_mps2, kForceMps2)) return false;
-  if (differ(end.f_ib_b_mps2, middle.f_ib_b_mps2, kForceMps2)) return false;
-  if (start.nav.q_eb.angularDistance(end.nav.q_eb) > kTurnRad) return false;
-  // Nothing has happened between the three that they do not show.
-  const Eigen::Vector3d coriolis = 2.0 * earth_rotation_e_radps().cross(middle.nav.v_e_mps);
-  const Eigen::Vector3d expected = start.nav.v_e_mps + dt_s * (acceleration_e(middle) - coriolis);
-  return !differ(end.nav.v_e_mps, expected, dt_s * kForceMps2);
-}
-
 }  // namespace
-
-/// The truth of a trajectory, taken as densely as it changes.
-class ErrorTrack::Sampler {
- public:
-  Sampler(ErrorTrack& track, const Trajectory& trajectory, std::size_t steps)
-      : track_(track), trajectory_(trajectory), steps_(steps), start_(truth_at(trajectory, 0.0)) {}
-
-  void sample() {
-    while (step_ < steps_) {
-      const std::size_t first_piece = track_.pieces_.size();
-      const Eigen::Vector3d v_before = start_.nav.v_e_mps;
-      std::size_t legs = std::min(2 * legs_, std::min(kMostLegs, steps_ - step_));
-      while (legs > 1 && !add_steady(legs)) legs /= 2;
-      if (legs == 1 && !add_steady(1)) add_moving();
-      const double run_s = static_cast<double>(legs) * track_.step_s_;
-      Run run;
-      run.first_piece = first_piece;
-      run.is_steady = track_.pieces_.size() == first_piece + 1;
-      run.gain_e_mps2 = (start_.nav.v_e_mps - v_before) / run_s;
-      run.middle = middle_;
-      run.middle_s = time_s(static_cast<double>(step_)) + 0.5 * run_s;
-      track_.add_run(legs, run);
-      step_ += legs;
-      legs_ = legs;
-    }
-  }
-
- private:
-  static constexpr std::size_t kMostLegs = 64;
-
-  double time_s(double step) const { return step * track_.step_s_; }
-
-  /// One piece for some legs in a row. @returns false, and changes nothing, where they differ.
-  bool add_steady(std::size_t legs) {
-    const auto begin = static_cast<double>(step_);
-    const auto count = static_cast<double>(legs);
-    const TruthPoint end = truth_at(trajectory_, time_s(begin + count));
-    middle_ = truth_at(trajectory_, time_s(begin + 0.5 * count));
-    if (!is_steady(start_, middle_, end, time_s(count))) return false;
-    if (legs > 1 && !mean_has_come_to(middle_)) return false;
-    MeanMotion of_leg;
-    for (int i = 0; i < kPiecesPerStep; ++i) {
-      let_mean_follow(middle_);
-      of_leg.omega_ib_b_radps += mean_.omega_ib_b_radps / kPiecesPerStep;
-      of_leg.acceleration_e_mps2 += mean_.acceleration_e_mps2 / kPiecesPerStep;
-    }
-    pieces_before_ += (legs - 1) * kPiecesPerStep;
-    add_piece(middle_, of_leg);
-    start_ = end;
-    return true;
-  }
-
-  void add_moving() {
-    for (int i = 0; i < kPiecesPerStep; ++i) {
-      const double at = static_cast<double>(step_) + (i + 0.5) / kPiecesPerStep;
-      const TruthPoint truth = truth_at(trajectory_, time_s(at));
-      let_mean_follow(truth);
-      add_piece(truth, mean_);
-    }
-    start_ = truth_at(trajectory_, time_s(static_cast<double>(step_ + 1)));
-  }
-
-  void add_piece(const TruthPoint& truth, const MeanMotion& motion) {
-    track_.pieces_.push_back({truth.nav.q_eb.toRotationMatrix(),
-                              gravity_gradient_e(truth.nav.r_e_m), truth.f_ib_b_mps2,
-                              truth.omega_ib_b_radps, motion});
-  }
-
-  void let_mean_follow(const TruthPoint& truth) {
-    const double piece_s = track_.piece_s_;
-    const double window_s = std::clamp(static_cast<double>(++pieces_before_) * piece_s, piece_s,
-                                       std::max(InertialEstimate::kMeanRateS, piece_s));
-    const double share = piece_s / window_s;
-    mean_.omega_ib_b_radps += share * (truth.omega_ib_b_radps - mean_.omega_ib_b_radps);
-    mean_.acceleration_e_mps2 += share * (acceleration_e(truth) - mean_.acceleration_e_mps2);
-  }
-
-  /// Whether the filter's mean of the motion is that of now.
-  bool mean_has_come_to(const TruthPoint& now) const {
-    return (mean_.omega_ib_b_radps - now.omega_ib_b_radps).norm() < 1e-5 &&
-           (mean_.acceleration_e_mps2 - acceleration_e(now)).norm() < 1e-3;
-  }
-
-  ErrorTrack& track_;
-  const Trajectory& trajectory_;
-  std::size_t steps_;
-  TruthPoint start_;   // of the step
-  TruthPoint middle_;  // of the run
-  std::size_t step_{0};
-  std::size_t legs_{1};  // of the last run
-  std::size_t pieces_before_{0};
-  MeanMotion mean_{};
-};
 
 ErrorTrack::ErrorTrack(const Trajectory& trajectory, double duration_s,
                        const ErrorTrackConfig& config)
-    : config_(config), path_(trajectory, duration_s) {
-  require("error track", "step_s", config.step_s, between(0.01, 100.0));
-  require("error track", "duration_s", duration_s, kPositive);
-  const double period_s = trajectory.period_s.value_or(duration_s);
-  const double span_s = std::min(period_s, duration_s);
-  const auto steps = static_cast<std::size_t>(std::ceil(span_s / config.step_s - kSlack));
-  step_s_ = span_s / static_cast<double>(steps);
-  piece_s_ = step_s_ / kPiecesPerStep;
-  run_of_.reserve(steps);
-  Sampler(*this, trajectory, steps).sample();
+    : ErrorTrack(std::make_shared<MotionSamples>(trajectory, duration_s, config.step_s), config) {}
+
+ErrorTrack::ErrorTrack(std::shared_ptr<const MotionSamples> motion, const ErrorTrackConfig& config)
+    : config_(config),
+      motion_(std::move(motion)),
+      steps_(motion_->steps()),
+      step_s_(motion_->step_s()) {
+  for (std::size_t run = 0; run < motion_->runs().size(); ++run) {
+    const Leg whole = part(run, 0.0, step_s_);
+    runs_.push_back({whole.Phi, whole.motion});
+    if (config_.parameters) B_.emplace_back(whole.B.topRows<kBa>());
+  }
 }
+
+std::size_t ErrorTrack::run_of(std::size_t step) const { return motion_->run_of(step); }
+
+const GroundPath& ErrorTrack::path() const { return motion_->path(); }
 
 TruthPoint ErrorTrack::truth(const Trajectory& trajectory, double t_s) const {
-  const double span_s = static_cast<double>(steps()) * step_s_;
-  const double local_s = t_s - std::max(std::ceil(t_s / span_s - kSlack) - 1.0, 0.0) * span_s;
-  const double step = std::max(std::floor(local_s / step_s_ + kSlack), 0.0);
-  const Run& run = runs_[run_of_[std::min(static_cast<std::size_t>(step), steps() - 1)]];
-  if (!run.is_steady) return truth_at(trajectory, t_s);
-  const double dt_s = local_s - run.middle_s;
-  TruthPoint truth = run.middle;
-  truth.nav.r_e_m += dt_s * truth.nav.v_e_mps;
-  truth.nav.v_e_mps += dt_s * run.gain_e_mps2;
-  return truth;
-}
-
-void ErrorTrack::add_run(std::size_t legs, Run run) {
-  const Leg whole = part(run, 0.0, step_s_);
-  run.Phi = whole.Phi;
-  run.motion = whole.motion;
-  run_of_.insert(run_of_.end(), legs, static_cast<std::uint32_t>(runs_.size()));
-  runs_.push_back(run);
-  if (config_.parameters) B_.push_back(whole.B);
+  return motion_->truth(trajectory, t_s);
 }
 
 Leg ErrorTrack::leg(double from_s, double to_s) const {
   const double steps_before = std::floor(from_s / step_s_ + kSlack);
-  const std::size_t index = run_of_[static_cast<std::size_t>(steps_before) % run_of_.size()];
-  const Run& run = runs_[index];
+  const std::size_t run = run_of(static_cast<std::size_t>(steps_before) % steps_);
   const double start_s = steps_before * step_s_;
   const double offset_s = from_s - start_s;
   const double slack_s = kSlack * step_s_;
   const bool to_the_end = to_s > start_s + step_s_ - slack_s;
   Leg result;
   if (to_the_end && offset_s < slack_s) {
-    result.Phi = run.Phi;
-    result.motion = run.motion;
-    if (config_.parameters) result.B = B_[index];
+    result.Phi = runs_[run].Phi;
+    result.motion = runs_[run].motion;
+    if (config_.parameters) result.B.topRows<kBa>() = B_[run];
   } else {
     result = part(run, offset_s, to_the_end ? step_s_ : to_s - start_s);
   }
@@ -201,41 +70,50 @@ Leg ErrorTrack::leg(double from_s, double to_s) const {
 }
 
 bool ErrorTrack::is_stationary() const {
-  const Piece& first = pieces_.front();
-  return std::ranges::all_of(pieces_, [&first](const Piece& piece) {
+  using Piece = MotionSamples::Piece;
+  const Piece& first = motion_->pieces().front();
+  return std::ranges::all_of(motion_->pieces(), [&first](const Piece& piece) {
     constexpr double kRounding = 1e-9;  // rad, m/s^2
-    return (piece.C_eb - first.C_eb).norm() < kRounding &&
+    return piece.q_eb.angularDistance(first.q_eb) < kRounding &&
            (piece.f_b_mps2 - first.f_b_mps2).norm() < kRounding;
   });
 }
 
-void ErrorTrack::extend(Leg& leg, const Piece& piece, double dt_s) const {
-  ErrorDynamics dynamics;
-  dynamics.dt_s = dt_s;
-  dynamics.C_eb_mean = piece.C_eb;
-  dynamics.dv_f_e_mps = dt_s * (piece.C_eb * piece.f_b_mps2);
-  dynamics.gravity_gradient_e = piece.gravity_gradient_e;
-  dynamics.a_a = bias_decay(dt_s, config_.tau_a_s);
-  dynamics.g_g = bias_decay(dt_s, config_.tau_g_s);
+void ErrorTrack::extend(Leg& leg, const ErrorDynamics& dynamics,
+                        const ParameterMatrix& input) const {
   advance(leg.Phi, dynamics);
   if (!config_.parameters) return;
   Transition Phi;
   advance(Phi, dynamics);
-  const ParameterMatrix half =
-      0.5 * dt_s * parameter_input(piece.C_eb, piece.f_b_mps2, piece.omega_ib_b_radps);
+  const ParameterMatrix half = 0.5 * dynamics.dt_s * input;
   leg.B = times(Phi, leg.B + half) + half;
 }
 
-Leg ErrorTrack::part(const Run& run, double from_s, double to_s) const {
+Leg ErrorTrack::part(std::size_t index, double from_s, double to_s) const {
+  const MotionSamples::Run& run = motion_->runs()[index];
+  const double piece_s = motion_->piece_s();
   Leg leg;
-  for (std::size_t i = 0; i < kPiecesPerStep; ++i) {
-    const double begin_s = std::max(from_s, static_cast<double>(i) * piece_s_);
-    const double end_s = std::min(to_s, static_cast<double>(i + 1) * piece_s_);
-    if (end_s - begin_s <= kSlack * piece_s_) continue;
-    const Piece& piece = pieces_[run.first_piece + (run.is_steady ? 0 : i)];
-    extend(leg, piece, end_s - begin_s);
-    leg.motion.omega_ib_b_radps += (end_s - begin_s) * piece.motion.omega_ib_b_radps;
-    leg.motion.acceleration_e_mps2 += (end_s - begin_s) * piece.motion.acceleration_e_mps2;
+  ErrorDynamics dynamics;
+  dynamics.gravity_gradient_e = run.gravity_gradient_e;
+  ParameterMatrix input;
+  for (std::size_t i = 0; i < MotionSamples::kPiecesPerStep; ++i) {
+    const double begin_s = std::max(from_s, static_cast<double>(i) * piece_s);
+    const double dt_s = std::min(to_s, static_cast<double>(i + 1) * piece_s) - begin_s;
+    if (dt_s <= MotionSamples::kSlack * piece_s) continue;
+    const MotionSamples::Piece& piece = motion_->piece(run, i);
+    if (leg.Phi.dt_s == 0.0 || !run.is_steady) {
+      dynamics.C_eb_mean = piece.q_eb.toRotationMatrix();
+      if (config_.parameters) {
+        input = parameter_input(dynamics.C_eb_mean, piece.f_b_mps2, piece.omega_ib_b_radps);
+      }
+    }
+    dynamics.dt_s = dt_s;
+    dynamics.dv_f_e_mps = dt_s * (dynamics.C_eb_mean * piece.f_b_mps2);
+    dynamics.a_a = bias_decay(dt_s, config_.tau_a_s);
+    dynamics.g_g = bias_decay(dt_s, config_.tau_g_s);
+    extend(leg, dynamics, input);
+    leg.motion.omega_ib_b_radps += dt_s * piece.motion.omega_ib_b_radps;
+    leg.motion.acceleration_e_mps2 += dt_s * piece.motion.acceleration_e_mps2;
   }
   leg.motion.omega_ib_b_radps /= leg.Phi.dt_s;
   leg.motion.acceleration_e_mps2 /= leg.Phi.dt_s;

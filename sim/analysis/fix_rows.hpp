@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "leeway/model/error_state.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"
@@ -28,6 +29,14 @@ using RowVariances = Eigen::Matrix<double, kRowKinds, 1>;
 struct FixRows {
   Eigen::Matrix<double, 6, kErrorStates> H{Eigen::Matrix<double, 6, kErrorStates>::Zero()};
   Eigen::Matrix<double, 6, 1> per_sigma{Eigen::Matrix<double, 6, 1>::Zero()};
+  double fixes{1.0};  ///< whose mean this is: what is white averages out
+
+  /// So many of these fixes as one.
+  void repeat(double times) {
+    H *= std::sqrt(times);
+    per_sigma *= std::sqrt(times);
+    fixes *= times;
+  }
 };
 
 /// Variances of a fix by row, as the receiver reports them, m^2 and m^2/s^2.

@@ -26,6 +26,7 @@ void validate(const Scene& scene, const std::vector<AllowedError>& limits,
   const double below_longest_s = std::nextafter(longest_interval_s(scene), 0.0);
   require("interval", "shortest_s, below the longest that the scene can be asked for,",
           config.shortest_s, between(0.01, below_longest_s));
+  require("interval", "first_guess_s", config.first_guess_s, kPositive);
   require("interval", "tolerance", config.tolerance, between(1e-6, 0.1));
 }
 
@@ -51,8 +52,8 @@ class Solver {
   Solver(const Scene& scene, const std::vector<AllowedError>& limits, const IntervalConfig& config)
       : scene_(with_way(scene, limits)),
         config_(config),
-        track_(error_track(scene, config.covariance_step_s)),
-        stretches_(scene_, track_),
+        tracks_(config.tracks != nullptr ? *config.tracks : own_tracks_),
+        track_(tracks_.of(scene, config.covariance_step_s)),
         log_longest_(std::log(longest_interval_s(scene))) {}
 
   Interval solve(const AllowedError& allowed) {
@@ -75,12 +76,32 @@ class Solver {
     return answer;
   }
 
+  /// What halving the step changes. The last question: the track of whole steps is given up for it.
+  void add_step_effects(std::vector<Interval>& answers) {
+    analysis_.reset();
+    track_ = tracks_.of(scene_, 0.5 * config_.covariance_step_s);
+    analysis_.emplace(scene_, *track_);
+    known_.clear();
+    for (Interval& answer : answers) {
+      const bool is_never = answer.outcome == Interval::Outcome::kNever;
+      const double interval_s = is_never ? config_.shortest_s : answer.interval_s;
+      // Fixes closer than half a step are the steps.
+      if (interval_s <= 0.5 * config_.covariance_step_s) continue;
+      auto found = known_.find(interval_s);
+      if (found == known_.end()) {
+        found = known_.emplace(interval_s, analysis_->at(interval_s)).first;
+      }
+      const double fine_m = found->second.true_errors.worst(answer.allowed()).error_m;
+      answer.step_effect = std::abs(fine_m / answer.true_m - 1.0);
+    }
+  }
+
   void add_free_inertial(std::vector<Interval>& answers) const {
     ErrorBeforeFix before;
     double before_s = 0.0;
-    free_inertial(scene_, track_, [&](const CovariancePoint& point) {
+    free_inertial(scene_, *track_, [&](const CovariancePoint& point) {
       const Eigen::Matrix3d P_n_m2 = ned_covariance(point.r_e_m, point.truth.block<3, 3>(kDr, kDr));
-      const ErrorBeforeFix now = error_before_fix(scene_, track_, 0.0, point.t_s, P_n_m2);
+      const ErrorBeforeFix now = error_before_fix(scene_, *track_, 0.0, point.t_s, P_n_m2);
       if (config_.free_inertial_observer) config_.free_inertial_observer(point.t_s, now.error_m);
       bool wanted = false;
       for (Interval& answer : answers) {
@@ -100,18 +121,13 @@ class Solver {
   }
 
  private:
-  CovarianceAnalysis analysis_at(double log_interval, Stretches& stretches) const {
-    Scene scene = scene_;
-    scene.gnss.interval_s = std::exp(log_interval);
-    return analyze_end(scene, stretches);
-  }
-
   /// Every interval is analysed once, whatever limits ask for it.
   const CovarianceAnalysis& known(double log_interval) {
-    auto found = known_.find(log_interval);
+    const double interval_s = std::exp(log_interval);
+    auto found = known_.find(interval_s);
     if (found == known_.end()) {
-      found = known_.emplace(log_interval, analysis_at(log_interval, stretches_)).first;
-      if (config_.observer) config_.observer(std::exp(log_interval), found->second);
+      found = known_.emplace(interval_s, analysis_->at(interval_s)).first;
+      if (config_.observer) config_.observer(interval_s, found->second);
     }
     return found->second;
   }
@@ -125,11 +141,19 @@ class Solver {
   /// the lower one keeps the limit, as far as the steps see it. They are the same for all limits.
   std::pair<Sample, Sample> bracket(const AllowedError& allowed) {
     const double log_shortest = std::log(config_.shortest_s);
-    const auto longer = [&](const Sample& s) {
-      return sample(std::min(s.log_interval + std::log(kLongerBy), log_longest_), allowed);
+    const auto guess = [&](double log_guess) {
+      return sample(std::clamp(log_guess, log_shortest, log_longest_), allowed);
     };
-    const double log_first = std::clamp(std::log(kFirstGuessS), log_shortest, log_longest_);
-    Sample below = sample(log_first, allowed);
+    // On the same steps whatever is guessed: between them the error may rise and fall.
+    const double log_longer = std::log(kLongerBy);
+    const auto longer = [&](const Sample& s) {
+      return sample(std::min(s.log_interval + log_longer, log_longest_), allowed);
+    };
+    const double log_known = std::log(config_.first_guess_s / kFirstGuessS);
+    const double steps = std::max(std::floor(log_known / log_longer), 0.0);
+    Sample below = guess(std::log(kFirstGuessS) + steps * log_longer);
+    if (below.is_beyond()) below = guess(std::log(kFirstGuessS));
+    const double log_first = below.log_interval;
     Sample above = below;
     while (below.is_beyond() && below.log_interval > log_shortest) {
       above = below;
@@ -185,26 +209,16 @@ class Solver {
     answer.allowed_m = allowed.after_m(worst.distance_m);
     answer.claimed_m = analysis.claimed_errors.worst(allowed).error_m;
     answer.settled = analysis.settled;
-    if (!config_.with_step_effect) return;
-    // Fixes closer than half a step are the steps.
-    if (std::exp(log_interval) <= 0.5 * config_.covariance_step_s) return;
-    if (!fine_track_) {
-      fine_track_ = error_track(scene_, 0.5 * config_.covariance_step_s);
-      fine_stretches_.emplace(scene_, *fine_track_);
-    }
-    const double fine_m =
-        analysis_at(log_interval, *fine_stretches_).true_errors.worst(allowed).error_m;
-    answer.step_effect = std::abs(fine_m / answer.true_m - 1.0);
   }
 
   Scene scene_;
   const IntervalConfig& config_;
-  ErrorTrack track_;
-  Stretches stretches_;
-  std::optional<ErrorTrack> fine_track_{};
-  std::optional<Stretches> fine_stretches_{};
+  SceneTracks own_tracks_{};
+  SceneTracks& tracks_;
+  std::optional<ErrorTrack> track_;
+  std::optional<EndAnalysis> analysis_{std::in_place, scene_, *track_};
   double log_longest_;
-  std::map<double, CovarianceAnalysis> known_{};  // by log(interval)
+  std::map<double, CovarianceAnalysis> known_{};  // by interval
 };
 
 }  // namespace
@@ -223,6 +237,7 @@ std::vector<Interval> solve_intervals(const Scene& scene, const std::vector<Allo
     }
   }
   solver.add_free_inertial(answers);
+  if (config.with_step_effect) solver.add_step_effects(answers);
   return answers;
 }
 

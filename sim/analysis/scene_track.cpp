@@ -4,7 +4,9 @@
 
 #include "leeway/model/process_noise.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
+#include "leeway/sim/analysis/scene_tracks.hpp"
 #include "sim/analysis/aiding_rows.hpp"
+#include "sim/analysis/motion_samples.hpp"
 #include "sim/analysis/truth_model.hpp"
 
 namespace leeway::sim {
@@ -21,15 +23,24 @@ double step_limit_s(const ImuErrorModel& imu) {
 
 }  // namespace
 
-ErrorTrack error_track(const Scene& scene, double step_s) {
+ErrorTrack SceneTracks::of(const Scene& scene, double step_s) {
   const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
-  ErrorTrack track(scene.trajectory, scene.duration_s,
-                   {std::min(step_s, step_limit_s(scene.imu)),
-                    !parameter_moments(scene.imu).empty(), noise.tau_a_s, noise.tau_g_s});
+  const ErrorTrackConfig config{std::min(step_s, step_limit_s(scene.imu)),
+                                !parameter_moments(scene.imu).empty(), noise.tau_a_s,
+                                noise.tau_g_s};
+  std::shared_ptr<const MotionSamples>& motion = motions_[config.step_s];
+  if (!motion) {
+    motion = std::make_shared<MotionSamples>(scene.trajectory, scene.duration_s, config.step_s);
+  }
+  ErrorTrack track(motion, config);
   if (scene.vehicle || scene.estimator == SceneEstimator::kNavigator) {
-    track.set_aiding(std::make_shared<SceneAiding>(scene, track.step_s()));
+    track.set_aiding(std::make_shared<SceneAiding>(scene, motion));
   }
   return track;
+}
+
+ErrorTrack error_track(const Scene& scene, double step_s) {
+  return SceneTracks().of(scene, step_s);
 }
 
 }  // namespace leeway::sim

@@ -42,6 +42,7 @@ template <int kFilters, int kParameters = 0>
 struct RowGain {
   int row{};
   double per_sigma{};
+  double readings{1.0};  ///< whose mean this is
   Eigen::Matrix<double, kErrorStates + kParameters, 1> h =
       Eigen::Matrix<double, kErrorStates + kParameters, 1>::Zero();
   ErrorGains<kFilters, kParameters> K{ErrorGains<kFilters, kParameters>::Zero()};
@@ -167,7 +168,7 @@ class SourceCovariance {
       cross.col(i) = P.template middleCols<kOwn>(i * kOwn) * gain.h;
     }
     Eigen::Matrix<double, kFilters, kFilters> variance = measured(gain.h, cross);
-    variance.array() += row_variance(gain.row) * per_sigma * per_sigma;
+    variance.array() += row_variance(gain.row) * per_sigma * per_sigma / gain.readings;
     for (MarkovSource<kFilters, kParameters>& source : processes_) {
       auto innovation_g = measured(gain.h, source.S);  // E[innovation g^T]
       if (source.enters_at == MarkovSource<kFilters, kParameters>::kFixes && gain.row < 3) {
@@ -180,7 +181,11 @@ class SourceCovariance {
       source.S -= gain.K * innovation_g;
     }
     const ErrorGains<kFilters, kParameters> half = cross - gain.K * (0.5 * variance);
-    P.noalias() -= gain.K * half.transpose() + half * gain.K.transpose();
+    if constexpr (kFilters == 1) {
+      for (int j = 0; j < P.cols(); ++j) P.col(j) -= half(j) * gain.K + gain.K(j) * half;
+    } else {
+      P.noalias() -= gain.K * half.transpose() + half * gain.K.transpose();
+    }
   }
 
  private:
@@ -188,6 +193,14 @@ class SourceCovariance {
     P.diagonal().template tail<kParameters>() += leg.Phi.dt_s * walk_per_s;
     if constexpr (kFilters == 1 && kParameters == 0) {
       leeway::propagate(P, leg.Phi, noise);
+    } else if constexpr (kFilters == 1) {
+      ErrorMatrix errors = P.template topLeftCorner<kErrorStates, kErrorStates>();
+      leeway::propagate(errors, leg.Phi, noise);
+      P.template topLeftCorner<kErrorStates, kErrorStates>() = errors;
+      const Eigen::Matrix<double, kErrorStates, kParameters> cross =
+          times(leg.Phi, P.template topRightCorner<kErrorStates, kParameters>());
+      P.template topRightCorner<kErrorStates, kParameters>() = cross;
+      P.template bottomLeftCorner<kParameters, kErrorStates>() = cross.transpose();
     } else {
       const ErrorMatrix half = noise_variance(noise, 0.5 * leg.Phi.dt_s).asDiagonal();
       add_shared(0, half);

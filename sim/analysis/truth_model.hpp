@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,10 @@ class TruthModel {
   /// @param by_source    keeps the sources apart; else they share one covariance
   TruthModel(const Scene& scene, const ErrorMatrix& initial_nav,
              const std::array<ProcessNoise, kFilters>& filters, bool by_source)
-      : filters_(filters), by_source_(by_source), parameter_moments_(parameter_moments(scene.imu)) {
+      : filters_(filters),
+        by_source_(by_source),
+        parameter_moments_(std::make_shared<const ParameterMoments>(parameter_moments(scene.imu))) {
+    for (const auto& [name, own] : *parameter_moments_) all_moments_ += own;
     of(ErrorSource::kInitial).add_shared(0, initial_nav);
     const ImuErrorModel& believed = scene.filter.imu;
     add_triad(scene.imu.accelerometer, kBa, believed.accelerometer.bias);
@@ -54,7 +58,7 @@ class TruthModel {
   bool is_known_to(const ErrorMoment<kFilters, kParameters>& filter_P,
                    const Eigen::Matrix<double, 6, 1>& filter_fix_variance) const {
     const SourceCovariance<kFilters, kParameters>& all = sources_.front().second;
-    if (by_source_ || !all.processes().empty() || !parameter_moments_.empty()) return false;
+    if (by_source_ || !all.processes().empty() || !parameter_moments_->empty()) return false;
     return all.P.isApprox(filter_P, 1e-12) &&
            noise_variance(all.noise, 1.0) == noise_variance(filters_.front(), 1.0) &&
            all.row_variance.template head<6>().isApprox(filter_fix_variance, 1e-12);
@@ -73,21 +77,21 @@ class TruthModel {
   /// What RiccatiMap carries, all sources in one. @pre takes_stretches()
   SourceCovariance<kFilters, kParameters>& whole() { return sources_.front().second; }
   ParameterSources<kFilters, kParameters>* parameters() {
-    return parameter_moments_.empty() ? nullptr : &parameters_;
+    return parameter_moments_->empty() ? nullptr : &parameters_;
   }
 
   /// @tparam Part  a Leg, or a Stretch where takes_stretches()
   template <class Part>
   void propagate(const Part& leg) {
     for (auto& [name, source] : sources_) source.propagate(leg);
-    if (!parameter_moments_.empty()) parameters_.propagate(leg);
+    if (!parameter_moments_->empty()) parameters_.propagate(leg);
   }
 
   /// @param gains  on the rows one after the other: each sees the errors that the last one left
   void update(const FixRows& fix, const FixGains<kFilters, kParameters>& gains) {
     constexpr int kOwn = kErrorStates + kParameters;
     for (int row = 0; row < fix.H.rows(); ++row) {
-      RowGain<kFilters, kParameters> gain{row, fix.per_sigma(row)};
+      RowGain<kFilters, kParameters> gain{row, fix.per_sigma(row), fix.fixes};
       gain.h.template head<kErrorStates>() = fix.H.row(row).transpose();
       for (int i = 0; i < kFilters; ++i) {
         gain.K.col(i).template segment<kOwn>(i * kOwn) =
@@ -99,16 +103,14 @@ class TruthModel {
 
   void update(const RowGain<kFilters, kParameters>& gain) {
     for (auto& [name, source] : sources_) source.update(gain);
-    if (!parameter_moments_.empty()) parameters_.update(gain);
+    if (!parameter_moments_->empty()) parameters_.update(gain);
   }
 
   ErrorMoment<kFilters, kParameters> covariance() const {
     ErrorMoment<kFilters, kParameters> sum = ErrorMoment<kFilters, kParameters>::Zero();
     for (const auto& [name, source] : sources_) sum += source.P;
-    if (parameter_moments_.empty()) return sum;
-    ParameterMoment moment = ParameterMoment::Zero();
-    for (const auto& [name, own] : parameter_moments_) moment += own;
-    return sum + parameters_.covariance(moment);
+    if (parameter_moments_->empty()) return sum;
+    return sum + parameters_.covariance(all_moments_);
   }
 
   /// Of the first filter.
@@ -118,7 +120,8 @@ class TruthModel {
       error_budget.push_back({name, C_en.transpose() * P.template block<3, 3>(kDr, kDr) * C_en});
     };
     for (const auto& [name, source] : sources_) add(name, source.P);
-    for (const auto& [name, moment] : parameter_moments_) add(name, parameters_.covariance(moment));
+    for (const auto& [name, moment] : *parameter_moments_)
+      add(name, parameters_.covariance(moment));
     return error_budget;
   }
 
@@ -202,7 +205,8 @@ class TruthModel {
   bool by_source_;
   /// One for all, or one each.
   std::vector<std::pair<ErrorSource, SourceCovariance<kFilters, kParameters>>> sources_{};
-  ParameterMoments parameter_moments_;
+  std::shared_ptr<const ParameterMoments> parameter_moments_;
+  ParameterMoment all_moments_{ParameterMoment::Zero()};
   ParameterSources<kFilters, kParameters> parameters_{};
 };
 

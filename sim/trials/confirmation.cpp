@@ -49,18 +49,29 @@ LinearRun linear_run(const Scene& scene, const ErrorTrack& track) {
   return run;
 }
 
+/// Those of north, east, down that count.
+struct Axes {
+  Eigen::Index first{0};
+  Eigen::Index count{2};
+};
+
+/// The axes that a metric measures; of along and across the track the horizontal ones.
+Axes axes_of(ErrorMetric metric) {
+  if (metric == ErrorMetric::kVertical95) return {2, 1};
+  return {0, metric == ErrorMetric::k3d ? 3 : 2};
+}
+
 /// Of all trials but one; none is left out where `without` is none of them.
-/// @param axes  of north, east, down: so many count
 double rms_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
-                       const CovarianceAnalysis& linear, Eigen::Index axes = 2) {
+                       const CovarianceAnalysis& linear, Axes axes = {}) {
   double sum_m2 = 0.0;
   double epochs = 0.0;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (k == without || !trials[k].score.finite) continue;
-    sum_m2 += trials[k].score.error_sq_n_m2.head(axes).sum();
+    sum_m2 += trials[k].score.error_sq_n_m2.segment(axes.first, axes.count).sum();
     epochs += static_cast<double>(trials[k].score.epochs);
   }
-  return std::sqrt(sum_m2 / epochs) / linear.true_rms_n_m.head(axes).norm();
+  return std::sqrt(sum_m2 / epochs) / linear.true_rms_n_m.segment(axes.first, axes.count).norm();
 }
 
 double quantile_over_linear(const std::vector<SharedTrial>& trials, std::size_t without,
@@ -78,6 +89,7 @@ struct TrialRun {
   CampaignResult campaign{};
   CovarianceAnalysis linear{};
   double rms_over_true{};
+  double rms_of_axes{};  ///< the same, of the metric's axes
   double error_over_true{};
   double scatter{};
 
@@ -103,9 +115,10 @@ TrialRun summed(const std::vector<SharedTrial>& trials, const CovarianceAnalysis
   const auto ratio = [&](std::size_t without) {
     const double probability = quantile_probability(metric);
     if (probability > 0.0) return quantile_over_linear(trials, without, probability);
-    return rms_over_linear(trials, without, linear, metric == ErrorMetric::k3d ? 3 : 2);
+    return rms_over_linear(trials, without, linear, axes_of(metric));
   };
   run.rms_over_true = rms_over_linear(trials, n, linear);
+  run.rms_of_axes = rms_over_linear(trials, n, linear, axes_of(metric));
   run.error_over_true = ratio(n);
   double sum_sq = 0.0;
   for (std::size_t k = 0; k < n; ++k) sum_sq += std::pow(ratio(k) - run.error_over_true, 2);
@@ -155,9 +168,10 @@ class Confirmer {
     c.error_over_true = first.error_over_true;
     c.scatter = first.scatter;
     c.agrees = !first.diverges() && first.excess_sigmas() < kClearSigmas;
+    const auto axes = static_cast<int>(axes_of(scene_.limit.metric).count);
     c.consistent = c.campaign.diverged == 0 &&
                    within_band(c.campaign.mean_nees, kErrorStates, scene_.trials) &&
-                   within_band(2.0 * c.rms_over_true * c.rms_over_true, 2, scene_.trials);
+                   within_band(axes * first.rms_of_axes * first.rms_of_axes, axes, scene_.trials);
     if (!c.agrees) c.interval_s = search(answer, first);
     c.trials_run = trials_run_;
     return c;

@@ -27,7 +27,7 @@ inline constexpr double kAgreement = 1.1;
 /// What trials found at a solved interval.
 struct Confirmation {
   CampaignResult campaign{};
-  double rms_over_true{};  ///< to the linear analysis, which knows the unmodelled errors
+  double rms_over_true{};  ///< horizontal, to the linear analysis with the unmodelled errors
   /// The same by the scene's metric: of a radius that 95 % stay within, the one of the errors, each
   /// over the linear one at its fix; else the RMS.
   double error_over_true{};
@@ -35,8 +35,9 @@ struct Confirmation {
   /// The trials err as the linear analysis says: by no more than kAgreement as far as their scatter
   /// tells, and none diverged.
   bool agrees{false};
-  /// And the filter errs as much as it claims: NEES and the squared RMS within the band that an
-  /// honest filter leaves once in a thousand times.
+  /// And the filter errs as much as it claims: NEES, and the squared RMS of the axes that the
+  /// metric measures, within the band that an honest filter leaves once in a thousand times.
+  /// Along and across the track: the horizontal axes.
   bool consistent{false};
   /// Where they do not agree: the interval at which their error meets the limit. Nothing where no
   /// interval that was tried keeps it.

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "sim/analysis/scene_covariance.hpp"
 #include "sim/analysis/doubling/stretch.hpp"
+#include "sim/analysis/scene_covariance.hpp"
 
 namespace leeway::sim {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "leeway/covariance/covariance.hpp"
@@ -11,6 +12,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr std::size_t kMostLevels = 12;
+constexpr std::size_t kLeastSteady = 2;  // level of what is kept of steady motion
 constexpr std::size_t kMostBytes = 4'000'000;
 
 /// Phi P Phi^T.
@@ -57,8 +59,28 @@ Stretch Stretches::between(double from_s, double to_s) {
     void operator()(const Stretch& next) const { add_next(next); }
     void operator()(const Leg& next) const { add_next(stretches.of(next)); }
   };
-  follow(from_s, to_s, Adder{*this, add});
+  follow_parts(from_s, to_s, Adder{*this, add});
   return all.value_or(Stretch{});
+}
+
+const Stretch* Stretches::again(double from_s, double to_s) {
+  const double step_s = track_.step_s();
+  const auto first = static_cast<std::size_t>(from_s / step_s + kSlack);
+  const auto end = static_cast<std::size_t>(std::ceil(to_s / step_s - kSlack));
+  if (end < first + 2) return nullptr;
+  const std::size_t local = first % track_.steps();
+  const std::size_t last = local + (end - first) - 1;
+  const std::size_t run = track_.run_of(local);
+  if (last >= track_.steps() || run != track_.run_of(last)) return nullptr;
+  const double dt_s = to_s - from_s;
+  if (run != repeated_.run || std::abs(dt_s - repeated_.dt_s) > kSlack * step_s) {
+    repeated_.run = run;
+    repeated_.dt_s = dt_s;
+    repeated_.times = 1;
+    return nullptr;
+  }
+  if (++repeated_.times == 2) repeated_.stretch = between(from_s, to_s);
+  return &repeated_.stretch;
 }
 
 const Stretch* Stretches::longest(std::size_t& step, std::size_t last) {
@@ -71,8 +93,8 @@ const Stretch* Stretches::longest(std::size_t& step, std::size_t last) {
   std::size_t level = 0;
   while (fits(level + 1)) ++level;
   if (level < lowest_level_) {
-    while (level > 0 && !is_steady(level, local >> level)) --level;
-    if (level == 0) return nullptr;
+    while (level >= kLeastSteady && !is_steady(level, local >> level)) --level;
+    if (level < kLeastSteady) return nullptr;
   }
   step += std::size_t{1} << level;
   return &node(level, local >> level);
@@ -105,7 +127,8 @@ Stretch Stretches::made(std::size_t level, std::size_t index) {
   }
   const auto half = [&](std::size_t which) {
     const std::size_t child = 2 * index + which;
-    const bool is_kept = level - 1 >= lowest_level_ || is_steady(level - 1, child);
+    const bool is_long = level > kLeastSteady && is_steady(level - 1, child);
+    const bool is_kept = level - 1 >= lowest_level_ || is_long;
     return is_kept ? node(level - 1, child) : made(level - 1, child);
   };
   const Stretch earlier = half(0);

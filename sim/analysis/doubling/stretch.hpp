@@ -40,6 +40,26 @@ class Stretches {
   /// Their noise is that of the legs one by one.
   template <class F>
   void follow(double from_s, double to_s, F&& f) {
+    if (const Stretch* whole = again(from_s, to_s)) return f(*whole);
+    follow_parts(from_s, to_s, f);
+  }
+
+  /// The stretch from one time to the other as one.
+  Stretch between(double from_s, double to_s);
+
+ private:
+  static constexpr double kSlack = 1e-7;  // of a step, as the track's
+
+  /// A stretch within a run, and how often in a row one of this length has been asked for there.
+  struct Repeated {
+    std::size_t run{};
+    double dt_s{0.0};
+    int times{0};
+    Stretch stretch{};
+  };
+
+  template <class F>
+  void follow_parts(double from_s, double to_s, F&& f) {
     const double step_s = track_.step_s();
     auto step = static_cast<std::size_t>(std::ceil(from_s / step_s - kSlack));
     const auto last = static_cast<std::size_t>(std::floor(to_s / step_s + kSlack));
@@ -59,11 +79,9 @@ class Stretches {
     if (to_s - end_s > kSlack * step_s) track_.follow(end_s, to_s, f);
   }
 
-  /// The stretch from one time to the other as one.
-  Stretch between(double from_s, double to_s);
-
- private:
-  static constexpr double kSlack = 1e-7;  // of a step, as the track's
+  /// Where fixes repeat in steady motion, so does what lies between them.
+  /// @returns null where the stretch has not been asked for just before
+  const Stretch* again(double from_s, double to_s);
 
   /// The longest kept stretch that begins with a leg and ends by another; the first is moved on.
   /// @returns null where the leg itself is all there is
@@ -83,6 +101,7 @@ class Stretches {
   std::vector<std::vector<std::uint32_t>> kept_{};  // by level and index: place and 1, or 0
   std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> steady_{};  // by run and level
   std::deque<Stretch> nodes_{};
+  Repeated repeated_{};
 };
 
 /// Of two stretches in a row.

@@ -16,6 +16,9 @@ namespace {
 /// IMU increments that checks nobody asked for may take, some five seconds' work of a processor.
 constexpr double kSpareIncrements = 3e6;
 
+/// Steps of the covariance that an answer to a hundredth may take: a day's course is steady.
+constexpr double kRoughSteps = 1e4;
+
 /// The scene with its own IMU. What the command line says of the biases and the range of a class is
 /// not said of it.
 sim::Scene own_scene(SceneChoice choice) {
@@ -58,10 +61,12 @@ std::vector<sim::AllowedError> limits_to_solve(const IntervalChoice& choice,
 }
 
 void solve_limits(SolvedImu& imu, const std::vector<sim::AllowedError>& limits,
-                  const std::function<void(double)>& progress, Json& series) {
+                  sim::SceneTracks& tracks, const std::function<void(double)>& progress,
+                  Json& series) {
   std::map<double, std::array<double, 2>> errors_m;  // by interval
   SeriesTable free_inertial({"t_s", "true_m"});
   sim::IntervalConfig config;
+  config.tracks = &tracks;
   config.observer = [&errors_m](double interval_s, const sim::CovarianceAnalysis& analysis) {
     errors_m[interval_s] = {analysis.true_m, analysis.claimed_m};
   };
@@ -123,23 +128,27 @@ bool have_same_aiding(const sim::SceneVehicle& a, const sim::SceneVehicle& b) {
 }
 
 /// @pre the scene's own limit is among those that are solved
-void solve_aiding(SolvedImu& imu) {
+void solve_aiding(SolvedImu& imu, sim::SceneTracks& tracks) {
   if (!imu.scene.vehicle) return;
   Progress bar("aiding");
   const sim::AllowedError own = imu.scene.limit.allowed();
   const auto answered = std::ranges::find(
       imu.limits, own, [](const SolvedLimit& answer) { return answer.interval.allowed(); });
   const auto sets = aiding_sets(*imu.scene.vehicle);
+  sim::IntervalConfig config;
+  config.tolerance = 1e-2;
+  config.with_step_effect = false;
+  config.tracks = &tracks;
+  config.covariance_step_s = std::max(1.0, imu.scene.duration_s / kRoughSteps);
   for (const auto& [name, vehicle] : sets) {
     sim::Scene scene = imu.scene;
     scene.vehicle = vehicle;
-    sim::IntervalConfig config;
-    config.tolerance = 1e-2;
-    config.with_step_effect = false;
     const bool is_the_scenes = have_same_aiding(vehicle, *imu.scene.vehicle);
-    imu.aided.push_back(
-        {name, is_the_scenes,
-         is_the_scenes ? answered->interval : solve_intervals(scene, {own}, config).front()});
+    const sim::Interval interval =
+        is_the_scenes ? answered->interval : solve_intervals(scene, {own}, config).front();
+    imu.aided.push_back({name, is_the_scenes, interval});
+    // More aiding does not shorten what less of it allows.
+    if (!std::isnan(interval.interval_s)) config.first_guess_s = interval.interval_s;
     bar.show(static_cast<double>(imu.aided.size()) / static_cast<double>(sets.size()));
   }
 }
@@ -235,6 +244,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
   const std::vector<sim::AllowedError> limits = limits_to_solve(choice, own.limit);
   const std::vector<sim::Scene> scenes = scenes_to_solve(choice.scene, own);
   std::vector<SolvedImu> solved;
+  sim::SceneTracks tracks;
   Progress bar("interval");
   for (const sim::Scene& scene : scenes) {
     const auto progress = [&](double fraction) {
@@ -243,7 +253,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
     };
     SolvedImu imu{scene};
     if (scene.gnss.outages.empty()) {
-      solve_limits(imu, limits, progress, series);
+      solve_limits(imu, limits, tracks, progress, series);
     } else {
       imu.coasts = sim::coasts(scene, sim::error_track(scene), scene.limit.allowed());
     }
@@ -251,7 +261,7 @@ std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks
   }
   if (!own.gnss.outages.empty()) return solved;
   for (SolvedImu& imu : solved) {
-    if (scenes.size() == 1 || imu.scene.imu_name == own.imu_name) solve_aiding(imu);
+    if (scenes.size() == 1 || imu.scene.imu_name == own.imu_name) solve_aiding(imu, tracks);
     if (choice.with_sensitivity) solve_sensitivity(imu);
     if (choice.confirm_trials > 0) confirm(imu, choice, ranks);
   }

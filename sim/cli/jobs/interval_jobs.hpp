@@ -27,6 +27,6 @@ struct IntervalChoice {
 ///                on the way, free_inertial/IMU (t_s, true_m) and roofline/IMU, a roofline_series()
 /// @throws Error when the scene is invalid, or an answer is to be confirmed that was not asked for.
 std::vector<SolvedImu> solve_imus(const IntervalChoice& choice, const sim::Ranks& ranks,
-                                   Json& series);
+                                  Json& series);
 
 }  // namespace leeway::cli

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "leeway/sensors/imu_class.hpp"
+#include "leeway/sim/analysis/scene_tracks.hpp"
 #include "leeway/sim/motion/trajectories.hpp"
 #include "sim/analysis/doubling/repeated_fixes.hpp"
 
@@ -41,9 +42,8 @@ Trajectory at_rest() { return static_trajectory({.duration_s = 14400.0}); }
 
 void check_against_steps(const Scene& scene, double tolerance) {
   const ErrorTrack track = error_track(scene);
-  Stretches stretches(scene, track);
   const CovarianceAnalysis stepped = analyze(scene, track);
-  const CovarianceAnalysis doubled = analyze_end(scene, stretches);
+  const CovarianceAnalysis doubled = EndAnalysis(scene, track).at(scene.gnss.interval_s);
   CAPTURE(scene.gnss.interval_s);
   CAPTURE(stepped.true_m);
   CAPTURE(doubled.true_m);
@@ -89,12 +89,14 @@ TEST_CASE("a stretch does what its legs do one by one") {
 TEST_CASE("motion that repeats with the fixes is doubled as exactly as it is stepped" *
           doctest::test_suite("heavy")) {
   // Where legs end at fixes 1e-7 is rounding, of 4 h of biases learnt.
-  check_against_steps(scene_on(square_loop(), 3.75), 1e-7);
   check_against_steps(scene_on(square_loop(), 16.0), 1e-7);
   check_against_steps(scene_on(square_loop(), 100.0), 1e-7);
   check_against_steps(wronged(scene_on(square_loop(), 6.0)), 1e-7);
   check_against_steps(scene_on(at_rest(), 9.0), 1e-7);
   check_against_steps(wronged(scene_on(at_rest(), 9.0)), 1e-7);
+  // In a run of steady motion what lies between two fixes is cut into legs once: 1 % of the step's
+  // own error, which is 4e-5.
+  check_against_steps(scene_on(square_loop(), 3.75), 1e-6);
   // Elsewhere the legs between two fixes are cut otherwise from fix to fix: the step's own error.
   check_against_steps(scene_on(at_rest(), 9.3), 1e-4);
   check_against_steps(wronged(scene_on(at_rest(), 47.1)), 1e-4);
@@ -129,6 +131,78 @@ TEST_CASE("no pattern where the motion does not repeat, or not often enough") {
   CHECK(!pattern_of(scene_on(straight({.duration_s = 14400.0}), 10.0)));
   CHECK(!pattern_of(scene_on(square_loop(), 58.6)));
   CHECK(!pattern_of(scene_on(square_loop(), 60.0, 1800.0)));
+}
+
+TEST_CASE("fixes closer than a step, taken as one where they change little, or not at all") {
+  // 5e-4: fixes that are one take 5 % off a variance, which is then taken for even in between.
+  Scene scene = scene_on(car_drive({.duration_s = 900.0}), 0.1, 900.0);
+  scene.gnss.settle_s = 300.0;
+  for (const Scene& each : {scene, wronged(scene)}) {
+    for (const double T_s : {0.1, 0.27, 0.6}) {
+      Scene at = each;
+      at.gnss.interval_s = T_s;
+      const ErrorTrack track = error_track(at);
+      const CovarianceAnalysis stepped = analyze(at, track);
+      const CovarianceAnalysis together = EndAnalysis(at, track).at(T_s);
+      CAPTURE(T_s);
+      CHECK(std::abs(together.true_m / stepped.true_m - 1.0) < 5e-4);
+      CHECK(std::abs(together.claimed_m / stepped.claimed_m - 1.0) < 5e-4);
+    }
+  }
+}
+
+TEST_CASE("the filter that settled before one interval is that of the next") {
+  Scene scene = wronged(scene_on(car_drive({.duration_s = 900.0}), 20.0, 900.0));
+  scene.gnss.settle_s = 300.0;
+  const ErrorTrack track = error_track(scene);
+  EndAnalysis all(scene, track);
+  for (const double T_s : {20.0, 47.3, 20.0}) {
+    const CovarianceAnalysis again = all.at(T_s);
+    const CovarianceAnalysis alone = EndAnalysis(scene, track).at(T_s);
+    // Not one bit: nothing is done in another order.
+    CHECK(again.true_m == alone.true_m);
+    CHECK(again.fixes == alone.fixes);
+    CHECK(again.settled == alone.settled);
+  }
+}
+
+TEST_CASE("what lies between fixes of steady motion is the same again") {
+  // 1e-9: rounding. 12 s is within runs of 64 legs; the third of them comes from the second.
+  const Scene scene = wronged(scene_on(straight({.duration_s = 600.0}), 12.0, 600.0));
+  const ErrorTrack track = error_track(scene);
+  Stretches stretches(scene, track);
+  const ProcessNoise claimed = process_noise(scene.filter.imu);
+  ErrorMatrix stepped = ErrorMatrix::Identity();
+  ErrorMatrix taken = stepped;
+  struct Taker {
+    ErrorMatrix& P;
+    const ImuErrorModel& imu;
+    const ProcessNoise& noise;
+    void operator()(const Stretch& stretch) const {
+      propagate(P, stretch.Phi, ProcessNoise{});
+      P += stretch.claimed_noise;
+    }
+    void operator()(const Leg& leg) const {
+      propagate(P, leg.Phi, with_motion(noise, imu, leg.motion));
+    }
+  };
+  for (double t_s = 0.0; t_s < 599.0; t_s += 12.0) {
+    stretches.follow(t_s, t_s + 12.0, Taker{taken, scene.filter.imu, claimed});
+    track.follow(t_s, t_s + 12.0, Taker{stepped, scene.filter.imu, claimed});
+    CAPTURE(t_s);
+    CHECK((taken - stepped).norm() < 1e-9 * stepped.norm());
+  }
+}
+
+TEST_CASE("tracks of IMUs on one motion are what each is alone") {
+  SceneTracks tracks;
+  for (const ImuClass imu : {ImuClass::kMarine, ImuClass::kAutomotive}) {
+    Scene scene = scene_on(square_loop(), 10.0);
+    set_imu(scene, "class", imu_class_model(imu, RangeEnd::kMid));
+    const Leg shared = tracks.of(scene).leg(51.0, 52.0);
+    const Leg alone = error_track(scene).leg(51.0, 52.0);
+    CHECK(dense(shared.Phi) == dense(alone.Phi));
+  }
 }
 
 TEST_CASE("what is scored from early on is followed from then on") {

@@ -104,6 +104,19 @@ TEST_CASE("an answer does not depend on what else is asked") {
   }
 }
 
+TEST_CASE("a first guess leads to the same answer, whether it keeps the limit or breaks it") {
+  Scene scene = defined_case(ImuClass::kTactical);
+  scene.duration_s = 2400.0;
+  const double plain_s = solve_intervals(scene, {30.0}).front().interval_s;
+  IntervalConfig config;
+  config.first_guess_s = 0.7 * plain_s;
+  // Each is within the tolerance of where the error meets the limit.
+  const double guessed_s = solve_intervals(scene, {30.0}, config).front().interval_s;
+  CHECK(std::abs(guessed_s / plain_s - 1.0) < 2.0 * config.tolerance);
+  config.first_guess_s = 3.0 * plain_s;
+  CHECK(solve_intervals(scene, {30.0}, config).front().interval_s == plain_s);
+}
+
 TEST_CASE("a limit that grows with the way: kept at the answer, broken beyond it") {
   Scene scene = defined_case(ImuClass::kTactical);
   scene.duration_s = 2400.0;

@@ -23,6 +23,11 @@ TEST_CASE("the worst error is that of all, by any limit, for each of seeds 1 to 
                                  10.0 * std::floor(20.0 * random.uniform())};
       all.push_back(error);
       worst.add(error);
+      double most_m = 0.0;
+      for (const ErrorBeforeFix& e : all) {
+        if (e.distance_m <= 100.0) most_m = std::max(most_m, e.error_m);
+      }
+      CHECK(worst.largest_m(100.0) == most_m);
       if (k % 20 > 0) continue;
       for (const AllowedError& allowed :
            {AllowedError(5.0), AllowedError(0.1, 0.01), AllowedError(5.0, 0.05),

@@ -5,11 +5,10 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "leeway/covariance/transition.hpp"
 #include "leeway/model/process_noise.hpp"
@@ -42,6 +41,7 @@ struct ErrorTrackConfig {
   double tau_g_s{std::numeric_limits<double>::infinity()};
 };
 
+class MotionSamples;
 class SceneAiding;
 
 /// The dynamics along a trajectory. Attitude, rates and gravity gradient are taken at the middle of
@@ -54,13 +54,16 @@ class ErrorTrack {
   /// @throws Error unless 0.01 <= step_s <= 100 and 0 < duration_s.
   ErrorTrack(const Trajectory& trajectory, double duration_s, const ErrorTrackConfig& config);
 
+  /// On a motion that was sampled already, config.step_s apart at most.
+  ErrorTrack(std::shared_ptr<const MotionSamples> motion, const ErrorTrackConfig& config);
+
   /// The leg from one time to the other, or to the end of the step that from_s is in, whichever is
   /// earlier.
   /// @pre 0 <= from_s < to_s <= duration.
   Leg leg(double from_s, double to_s) const;
 
   /// Legs of the whole span, or of one period.
-  std::size_t steps() const { return run_of_.size(); }
+  std::size_t steps() const { return steps_; }
   double step_s() const { return step_s_; }
   bool has_parameters() const { return config_.parameters; }
 
@@ -76,10 +79,10 @@ class ErrorTrack {
   TruthPoint truth(const Trajectory& trajectory, double t_s) const;
 
   /// The run that a leg belongs to: legs of the same run are the same.
-  std::size_t run_of(std::size_t step) const { return run_of_[step]; }
+  std::size_t run_of(std::size_t step) const;
 
   /// The way along the trajectory.
-  const GroundPath& path() const { return path_; }
+  const GroundPath& path() const;
 
   /// Walk from one time to the other: f is called with each leg.
   /// @pre 0 <= from_s, to_s <= duration.
@@ -93,38 +96,23 @@ class ErrorTrack {
   }
 
  private:
-  struct Piece {
-    Eigen::Matrix3d C_eb;
-    Eigen::Matrix3d gravity_gradient_e;
-    Eigen::Vector3d f_b_mps2;
-    Eigen::Vector3d omega_ib_b_radps;
-    MeanMotion motion;  // as the filter's, over the seconds before
-  };
-
-  /// Legs in a row with the same dynamics: one leg of many pieces, or many of one.
-  struct Run {
-    std::size_t first_piece{};
-    bool is_steady{};
-    Transition Phi{};  // of a whole leg
+  /// Of a whole leg of a run.
+  struct RunDynamics {
+    Transition Phi{};
     MeanMotion motion{};
-    TruthPoint middle{};  // of a steady run
-    double middle_s{};
-    Eigen::Vector3d gain_e_mps2{};  // of velocity over the run
   };
+  /// Its rows of attitude, velocity and position; parameters leave the biases alone.
+  using RunParameters = Eigen::Matrix<double, kBa, kSensorParameters>;
 
-  class Sampler;
-  void add_run(std::size_t legs, Run run);
-  void extend(Leg& leg, const Piece& piece, double dt_s) const;
-  Leg part(const Run& run, double from_s, double to_s) const;
+  void extend(Leg& leg, const ErrorDynamics& dynamics, const ParameterMatrix& input) const;
+  Leg part(std::size_t run, double from_s, double to_s) const;
 
   ErrorTrackConfig config_;
+  std::shared_ptr<const MotionSamples> motion_;
+  std::size_t steps_;
   double step_s_;  // config_.step_s or a little less: whole steps in the span
-  double piece_s_;
-  GroundPath path_;
-  std::vector<Piece> pieces_{};
-  std::vector<Run> runs_{};
-  std::vector<ParameterMatrix> B_{};  // of the runs
-  std::vector<std::uint32_t> run_of_{};
+  std::deque<RunDynamics> runs_{};
+  std::deque<RunParameters> B_{};  // of the runs
   std::shared_ptr<const SceneAiding> aiding_{};
 };
 

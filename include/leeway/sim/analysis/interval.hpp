@@ -9,6 +9,7 @@
 
 #include "leeway/earth/names.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
+#include "leeway/sim/analysis/scene_tracks.hpp"
 #include "leeway/sim/scene/scene.hpp"
 
 namespace leeway::sim {
@@ -16,9 +17,12 @@ namespace leeway::sim {
 /// Options of solve_intervals().
 struct IntervalConfig {
   double shortest_s{0.1};  ///< intervals from here to longest_interval_s() are tried
+  /// Known to keep the limit as long as this one does: the answer with less aiding, say.
+  double first_guess_s{10.0};
   double tolerance{1e-3};  ///< relative, of the interval or of the error reached
   double covariance_step_s{1.0};
-  bool with_step_effect{true};  ///< whether Interval::step_effect is wanted
+  bool with_step_effect{true};   ///< whether Interval::step_effect is wanted
+  SceneTracks* tracks{nullptr};  ///< unless null, of this motion: shared with other questions
   /// Called with every interval that is analysed on the way, in no order.
   std::function<void(double interval_s, const CovarianceAnalysis&)> observer{};
   /// Called on the way to free_inertial_s, with the error by the scene's metric.

@@ -37,6 +37,9 @@ class WorstErrors {
  public:
   void add(const ErrorBeforeFix& error);
 
+  /// The largest error in m after no longer a way than this; 0 where there is none.
+  double largest_m(double distance_m) const;
+
   /// The error that is largest over what is allowed. @pre one has been added, allowed.limit_m > 0.
   ErrorBeforeFix worst(const AllowedError& allowed) const;
 

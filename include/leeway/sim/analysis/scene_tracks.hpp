@@ -1,0 +1,24 @@
+/// @file
+/// The error tracks of a scene with one IMU after the other.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "leeway/sim/analysis/error_track.hpp"
+#include "leeway/sim/scene/scene.hpp"
+
+namespace leeway::sim {
+
+/// Error tracks of scenes on the same trajectory and of the same duration: the motion is sampled
+/// once for all of them. Not for use by several threads.
+class SceneTracks {
+ public:
+  /// error_track() of a scene.
+  ErrorTrack of(const Scene& scene, double step_s = 1.0);
+
+ private:
+  std::map<double, std::shared_ptr<const MotionSamples>> motions_{};  // by the longest step
+};
+
+}  // namespace leeway::sim
