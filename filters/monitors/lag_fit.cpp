@@ -13,7 +13,7 @@ constexpr double kMemoryS = 240.0;    // what is older counts by less than a thi
 constexpr double kHeadingRad = 0.05;  // 3 deg: what a heading may be wrong by
 constexpr double kLeastAgeS = 0.04;   // receivers' velocities lag by half an epoch: 25 ms at 20 Hz
 constexpr double kBeyondChanceSigmas = 4.0;
-constexpr double kTellingRatio = 16.0;  // squared sigmas by which an age explains more than none
+constexpr double kTellingSquares = 16.0;  // squared sigmas by which an age explains more than none
 constexpr double kLeastDof = 60.0;
 constexpr double kHuberSigmas = 3.0;
 constexpr int kLevelDof = 2;
@@ -111,7 +111,7 @@ void LagFit::fit() {
   age_.sigma_s = std::min(1.0, std::sqrt(scale2_ / parabola.ss));
   const double gain = Parabola(cells_[AgeGrid::kHalf]).left(0.0) - least;
   const double bound_s = std::max(kLeastAgeS, kBeyondChanceSigmas * age_.sigma_s);
-  age_.beyond_chance = std::abs(age_.value_s) > bound_s && gain > kTellingRatio * scale2_;
+  age_.beyond_chance = std::abs(age_.value_s) > bound_s && gain > kTellingSquares * scale2_;
 }
 
 }  // namespace leeway
