@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "leeway/earth/error.hpp"
 #include "lib/logs/log_source.hpp"
@@ -18,6 +19,11 @@ constexpr std::int64_t kMaxHeadLines = 100'000;
 LogHead read_head(LineReader& lines) {
   LogHead head;
   while (const auto line = lines.next()) {
+    if (line->find('\0') != std::string_view::npos) {
+      throw Error(
+          lines.path() +
+          ": is a binary file, which is not read: convert it to CSV by the recorder's tools");
+    }
     if (!is_blank_or_comment(*line)) {
       head.line = *line;
       lines.unread();

@@ -135,6 +135,10 @@ TEST_CASE("the unit of a time is told by its step, and a name that contradicts i
                  "a step of 100 s between rows by its column t_s; are its times in ms?"));
 }
 
+TEST_CASE("a binary file is refused as one") {
+  CHECK(contains(imu_refusal(std::string("ULog\x01\x12\x35\0\0", 9)), "is a binary file"));
+}
+
 TEST_CASE("linear acceleration, without gravity, is refused with the remedy") {
   CHECK(contains(imu_refusal("Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s),"
                              "Linear Acceleration x (m/s^2),Linear Acceleration y (m/s^2),"
