@@ -22,10 +22,22 @@ struct ScaledFix {
     if (auto fault = parse(line, fix)) return fault;
     const auto squared = [](double x) { return x * x; };
     fix.time += options.time_offset;
+    if (!options.format.gnss_sigma.empty()) set_sigmas(fix);
     fix.position->R_e_m2 *= squared(options.position_sigma_scale);
     if (fix.velocity) fix.velocity->R_e_m2ps2 *= squared(options.velocity_sigma_scale);
     if (is_usable(fix)) return std::nullopt;
     return Fault{LineDamage::kOutOfRange, line};
+  }
+
+  void set_sigmas(GnssFix& fix) const {
+    const std::vector<double>& sigma = options.format.gnss_sigma;
+    const Eigen::Matrix3d C_en = ned_to_ecef(geodetic_from_ecef(fix.position->r_e_m));
+    const auto R_e = [&](double horizontal, double vertical) -> Eigen::Matrix3d {
+      const Eigen::Vector3d of_axis(horizontal, horizontal, vertical);
+      return C_en * of_axis.cwiseAbs2().asDiagonal() * C_en.transpose();
+    };
+    fix.position->R_e_m2 = R_e(sigma[0], sigma[1]);
+    if (fix.velocity && sigma.size() == 4) fix.velocity->R_e_m2ps2 = R_e(sigma[2], sigma[3]);
   }
 };
 
@@ -39,16 +51,22 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
                                                    const GnssLogOptions& options) {
   validate_scale("position_sigma_scale", options.position_sigma_scale);
   validate_scale("velocity_sigma_scale", options.velocity_sigma_scale);
-  const LogHead head = read_head(lines);
-  const GnssLayout& layout = layout_of(head, gnss_layouts());
-  ScaledFix parser{layout.parser(head, lines), options};
-  return std::make_unique<LogSource<GnssFix>>(std::move(lines), std::move(parser), layout.name);
+  const std::size_t sigmas = options.format.gnss_sigma.size();
+  if (sigmas != 0 && sigmas != 2 && sigmas != 4) {
+    throw Error("LogFormat::gnss_sigma: give two numbers or four");
+  }
+  std::vector<std::string> notes;
+  LogOpening log{read_head(lines), lines, options.format, notes};
+  const GnssLayout& layout = layout_of(log, gnss_layouts());
+  ScaledFix parser{layout.parser(log), options};
+  return std::make_unique<LogSource<GnssFix>>(std::move(lines), std::move(parser), layout.name,
+                                              std::move(notes));
 }
 
 }  // namespace
 
 const std::vector<GnssLayout>& gnss_layouts() {
-  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos()};
+  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(), nmea()};
   return kLayouts;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "leeway/earth/error.hpp"
@@ -18,13 +19,39 @@ bool is_proper_rotation(const Eigen::Matrix3d& C) {
   return (C * C.transpose()).isIdentity(kRotationTolerance) && C.determinant() > 0.0;
 }
 
+/// The body axis that a letter names.
+Eigen::Vector3d axis_named(char letter) {
+  constexpr std::string_view kPositive = "frd", kNegative = "blu";
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < kPositive.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    if (letter == kPositive[k]) axis[at] = 1.0;
+    if (letter == kNegative[k]) axis[at] = -1.0;
+  }
+  return axis;
+}
+
+/// Log axes to sensor axes forward, right, down.
+Eigen::Matrix3d axes_rotation(const std::string& axes) {
+  if (axes.empty() || axes == "ned") return Eigen::Matrix3d::Identity();
+  const std::string letters = axes == "enu" ? "rfu" : axes;
+  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < 3 && letters.size() == 3; ++k) {
+    C.col(static_cast<Eigen::Index>(k)) = axis_named(letters[k]);
+  }
+  if (is_proper_rotation(C)) return C;
+  throw Error("axes '" + axes +
+              "': wanted three letters for x, y, z, of forward, back, right, left, up, down, of a "
+              "right-handed frame, as frd, flu, rfu");
+}
+
 /// Rows as increments in body axes.
 class ImuSource final : public RecordSource<ImuIncrement> {
  public:
   ImuSource(LogSource<ImuRow> rows, const ImuLogOptions& options)
       : rows_(std::move(rows)),
-        options_(options),
-        rotates_(options.C_bs != Eigen::Matrix3d::Identity()) {}
+        options_(with_axes(options)),
+        rotates_(options_.C_bs != Eigen::Matrix3d::Identity()) {}
 
   std::optional<ImuIncrement> next() override {
     std::optional<ImuRow> row = rows_.next();
@@ -47,6 +74,11 @@ class ImuSource final : public RecordSource<ImuIncrement> {
   std::string_view layout() const override { return rows_.layout(); }
 
  private:
+  static ImuLogOptions with_axes(ImuLogOptions options) {
+    options.C_bs *= axes_rotation(options.format.axes);
+    return options;
+  }
+
   ImuIncrement increment(const ImuRow& row) const {
     if (row.is_rate) {
       return increment_between({previous_->time, previous_->angular, previous_->linear},
@@ -67,11 +99,13 @@ std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
   if (!is_proper_rotation(options.C_bs)) {
     throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
   }
-  const LogHead head = read_head(lines);
-  const ImuLayout& layout = layout_of(head, imu_layouts());
-  RowParser<ImuRow> parser = layout.parser(head, lines);
+  std::vector<std::string> notes;
+  LogOpening log{read_head(lines), lines, options.format, notes};
+  const ImuLayout& layout = layout_of(log, imu_layouts());
+  RowParser<ImuRow> parser = layout.parser(log);
   return std::make_unique<ImuSource>(
-      LogSource<ImuRow>(std::move(lines), std::move(parser), layout.name), options);
+      LogSource<ImuRow>(std::move(lines), std::move(parser), layout.name, std::move(notes)),
+      options);
 }
 
 }  // namespace

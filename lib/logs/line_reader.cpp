@@ -17,6 +17,8 @@ namespace {
 constexpr unsigned kZlibBufferBytes = 16 * 1024;
 constexpr unsigned kChunkBytes = 2 * kZlibBufferBytes;
 constexpr std::size_t kReadBufferBytes = 2 * LineReader::kMaxLineBytes;
+// Of a line that is too long. An endless one would be skipped for ever.
+constexpr std::size_t kMaxSkippedBytes = 64 * 1024 * 1024;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
@@ -81,12 +83,20 @@ std::string_view LineReader::take(std::size_t line_end, std::size_t next_begin) 
 
 void LineReader::skip_rest_of_line() {
   rest_to_skip_ = false;
+  std::size_t skipped = 0;
   do {
     if (const void* newline = std::memchr(buffer_.data() + begin_, '\n', end_ - begin_)) {
       begin_ = static_cast<std::size_t>(static_cast<const char*>(newline) - buffer_.data()) + 1;
       return;
     }
+    skipped += end_ - begin_;
     begin_ = end_;
+    if (skipped > kMaxSkippedBytes) {
+      at_end_ = true;
+      damage_ = path_ + ": line " + std::to_string(line_number_) +
+                " has no end within 64 MiB; the file is no text log from there on";
+      return;
+    }
   } while (refill());
 }
 

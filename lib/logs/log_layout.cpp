@@ -1,19 +1,39 @@
 #include "lib/logs/log_layout.hpp"
 
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
 #include "leeway/earth/error.hpp"
 #include "lib/logs/log_source.hpp"
 
 namespace leeway {
+namespace {
+
+// More lines than any header; what is longer has no end.
+constexpr std::size_t kKeptComments = 256;
+constexpr std::int64_t kMaxHeadLines = 100'000;
+
+}  // namespace
 
 LogHead read_head(LineReader& lines) {
   LogHead head;
   while (const auto line = lines.next()) {
+    if (line->find('\0') != std::string_view::npos) {
+      throw Error(
+          lines.path() +
+          ": is a binary file, which is not read: convert it to CSV by the recorder's tools");
+    }
     if (!is_blank_or_comment(*line)) {
       head.line = *line;
       lines.unread();
       break;
     }
-    head.comments.emplace_back(*line);
+    if (head.comments.size() < kKeptComments) head.comments.emplace_back(*line);
+    if (lines.line_number() >= kMaxHeadLines) {
+      throw Error(lines.path() + ": " + std::to_string(kMaxHeadLines) +
+                  " lines of comments or blanks and no data: this is no log");
+    }
   }
   return head;
 }

@@ -7,7 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "leeway/earth/error.hpp"
+#include "leeway/earth/names.hpp"
 #include "leeway/logs/line_reader.hpp"
+#include "leeway/logs/log_format.hpp"
 #include "lib/logs/text_fields.hpp"
 
 namespace leeway {
@@ -28,21 +31,38 @@ std::string first_line(LineReader& lines, const std::string& expected);
 /// A number first, and no comma: no CSV, and no header.
 bool is_bare_numbers(std::string_view line);
 
+/// A log that is being opened: the lines stand before the head's line.
+struct LogOpening {
+  LogHead head;
+  LineReader& lines;
+  const LogFormat& format;
+  std::vector<std::string>& notes;  ///< for the summary
+};
+
 /// One layout of a kind of log: a row of the table of its reader.
 template <class Row>
 struct LogLayout {
   std::string_view name{};  ///< for users: "KF-GINS text"
   std::string expected{};   ///< what such a log has, for error messages
-  bool (*sniff)(const LogHead& head){};
+  bool (*sniff)(const LogOpening& log){};
   /// Leaves the lines at the first row. @throws Error when the log lacks what the layout must have.
-  RowParser<Row> (*parser)(const LogHead& head, LineReader& lines){};
+  RowParser<Row> (*parser)(LogOpening& log){};
 };
 
-/// The last layout of the table that recognizes the head: the first of them must take anything.
+/// The layout that the format names, or the last of the table that recognizes the head: the first
+/// of them must take anything.
+/// @throws Error when the table has none of that name.
 template <class Row>
-const LogLayout<Row>& layout_of(const LogHead& head, const std::vector<LogLayout<Row>>& layouts) {
-  return *std::find_if(layouts.rbegin(), layouts.rend(),
-                       [&](const LogLayout<Row>& layout) { return layout.sniff(head); });
+const LogLayout<Row>& layout_of(const LogOpening& log, const std::vector<LogLayout<Row>>& layouts) {
+  const std::string& wanted = log.format.layout;
+  const auto found = std::find_if(layouts.rbegin(), layouts.rend(), [&](const auto& layout) {
+    return wanted.empty() ? layout.sniff(log) : is_same_name(layout.name, wanted);
+  });
+  if (found != layouts.rend()) return *found;
+  std::string known;
+  for (const auto& layout : layouts)
+    known += (known.empty() ? "" : ", ") + std::string(layout.name);
+  throw Error(log.lines.path() + ": no layout is named '" + wanted + "'; there are: " + known);
 }
 
 /// "a, b, or c".

@@ -31,7 +31,10 @@ std::string damage_message(const LineReader& lines, std::string_view line, const
 }
 
 Time WeekUnroller::unroll(Time time_of_week) {
-  if (last_) {
+  const auto is_in_week = [](Time t) {
+    return t.time_since_epoch() >= Duration{0} && t.time_since_epoch() <= kWeek;
+  };
+  if (last_ && is_in_week(*last_) && is_in_week(time_of_week)) {
     const Duration step = time_of_week - *last_;
     if (step < -kWeek + 2 * kNearWeekEnd) offset_ += kWeek;
     if (step > kWeek - 2 * kNearWeekEnd) offset_ -= kWeek;

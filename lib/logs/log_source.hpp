@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "leeway/earth/time.hpp"
 #include "leeway/logs/line_reader.hpp"
@@ -23,7 +24,8 @@ bool is_blank_or_comment(std::string_view line);
 /// "path:line:column: reason: 'text'".
 std::string damage_message(const LineReader& lines, std::string_view line, const Fault& fault);
 
-/// Continues seconds of week across the end of the week.
+/// Continues seconds of week across the end of the week. Times beyond 0 to 604800 s are no seconds
+/// of week, and stay.
 class WeekUnroller {
  public:
   Time unroll(Time time_of_week);
@@ -52,8 +54,11 @@ void add_to(Row& /*row*/, const Row& /*carried*/) {}
 template <class Row>
 class LogSource final : public RecordSource<Row> {
  public:
-  LogSource(LineReader lines, RowParser<Row> parser, std::string_view layout = "CSV")
-      : lines_(std::move(lines)), parser_(std::move(parser)), layout_(layout) {}
+  LogSource(LineReader lines, RowParser<Row> parser, std::string_view layout = "CSV",
+            std::vector<std::string> notes = {})
+      : lines_(std::move(lines)), parser_(std::move(parser)), layout_(layout) {
+    summary_.notes = std::move(notes);
+  }
 
   std::optional<Row> next() override {
     std::optional<Row> row = held_ ? std::exchange(held_, std::nullopt) : read();
@@ -82,7 +87,8 @@ class LogSource final : public RecordSource<Row> {
       if (lines_.overlong()) {
         reject(LineDamage::kTooLong);
       } else if (const auto fault = parser_(line_, row)) {
-        summary_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
+        if (fault->is_damage)
+          summary_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
       } else if (last_ && time_of(row) == *last_ && carries_over(row, *newest_)) {
         carry_over(row);
       } else if (last_ && time_of(row) <= *last_) {
@@ -92,6 +98,8 @@ class LogSource final : public RecordSource<Row> {
       }
     }
     summary_.incomplete = lines_.damage();
+    const bool holds_row = !std::exchange(is_asked_, true) && !parser_({}, row);
+    if (holds_row && !(last_ && time_of(row) <= *last_)) return row;
     return std::nullopt;
   }
 
@@ -137,6 +145,7 @@ class LogSource final : public RecordSource<Row> {
   std::string_view layout_;
   LogSummary summary_{};
   std::string_view line_{};    // read last
+  bool is_asked_{false};       // the parser, for what it holds at the end
   std::optional<Row> held_{};  // read ahead to settle() the row before it
   std::optional<Time> last_{};
   std::optional<Row> newest_{};   // as it was read

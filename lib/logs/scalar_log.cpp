@@ -29,10 +29,14 @@ std::unique_ptr<RecordSource<ScalarRecord>> scalar_source(LineReader lines,
                           NamedColumn{columns.value, {0, -columns.largest, columns.largest}}};
   const std::array sigma{NamedColumn{columns.sigma, {1, kLeastSigma, columns.largest, true}}};
   const std::string expected = "a CSV header with " + join(wanted) + " (and " + join(sigma) + ")";
-  CsvHeader header = take_csv_header(lines, wanted, expected);
+  const LogFormat format;
+  std::vector<std::string> notes;
+  LogOpening log{{}, lines, format, notes};
+  CsvHeader header = take_csv_header(log, wanted, expected);
   header.use_group(sigma);
-  return std::make_unique<LogSource<ScalarRecord>>(std::move(lines),
-                                                   ScalarRowParser{header.parser()});
+  header.note(notes);
+  return std::make_unique<LogSource<ScalarRecord>>(
+      std::move(lines), ScalarRowParser{header.parser()}, "CSV", std::move(notes));
 }
 
 }  // namespace

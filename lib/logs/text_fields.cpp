@@ -51,6 +51,7 @@ std::optional<LineDamage> parse_number(const char*& p, const char* end, double& 
 std::optional<LineDamage> parse_value(const Column& column, const char*& p, const char* end,
                                       double& value) {
   if (const auto damage = parse_number(p, end, value)) return damage;
+  value *= column.scale;
   if (value >= column.min && value <= column.max) return std::nullopt;
   if (std::isnan(value) && column.optional) return std::nullopt;
   return std::isfinite(value) ? LineDamage::kOutOfRange : LineDamage::kNotFinite;
@@ -63,6 +64,7 @@ bool take_plain_number(const Column& column, const char*& p, const char* end,
   if (column.slot < 0) return false;
   double& value = values[static_cast<std::size_t>(column.slot)];
   const auto [after, error] = std::from_chars(p, end, value);
+  value *= column.scale;
   if (error != std::errc{} || !(value >= column.min && value <= column.max)) return false;
   if (after == end) {
     p = end;
@@ -118,6 +120,29 @@ std::optional<LineDamage> parse_time(const char*& first, const char* last, Time&
 
 namespace {
 
+/// A time in counts of less than a second, exact where a double would round.
+std::optional<LineDamage> parse_counts(const char*& p, const char* end, double seconds_per_count,
+                                       Time& time) {
+  if (seconds_per_count == 1.0) return parse_time(p, end, time);
+  const char* const first = skip_plus(p, end);
+  std::int64_t whole = 0;
+  const auto [after, error] = std::from_chars(first, end, whole);
+  if (error == std::errc::result_out_of_range) return LineDamage::kOutOfRange;
+  if (error != std::errc{}) return LineDamage::kNotANumber;
+  const double ns_per_count = seconds_per_count * 1e9;
+  if (std::abs(static_cast<double>(whole)) * seconds_per_count >= kMaxTimeS) {
+    return LineDamage::kOutOfRange;
+  }
+  double fraction = 0.0;
+  p = after;
+  if (p != end && *p == '.' && p + 1 != end && is_digit(p[1])) {
+    p = std::from_chars(p, end, fraction).ptr;
+  }
+  const double ns = std::round(*first == '-' ? -fraction * ns_per_count : fraction * ns_per_count);
+  time = Time{Duration{whole * std::llround(ns_per_count) + std::llround(ns)}};
+  return std::nullopt;
+}
+
 /// Any field, and the separator behind it.
 template <Separator separator>
 std::optional<Fault> parse_field(const Column& column, const char*& p, const char* end, Time& time,
@@ -135,7 +160,7 @@ std::optional<Fault> parse_field(const Column& column, const char*& p, const cha
   } else {
     const auto damage =
         column.slot == Column::kTime
-            ? parse_time(p, end, time)
+            ? parse_counts(p, end, column.scale, time)
             : parse_value(column, p, end, values[static_cast<std::size_t>(column.slot)]);
     if (damage) return fault(*damage);
   }
@@ -155,8 +180,22 @@ LineParser::LineParser(Separator separator, std::vector<Column> columns)
 
 std::optional<Fault> LineParser::parse(std::string_view line, Time& time,
                                        std::span<double> values) const {
-  return separator_ == Separator::kComma ? parse_fields<Separator::kComma>(line, time, values)
-                                         : parse_fields<Separator::kRuns>(line, time, values);
+  if (separator_ == Separator::kRuns) return parse_fields<Separator::kRuns>(line, time, values);
+  if (separator_ != Separator::kComma) return parse_plain(line, time, values);
+  auto fault = parse_fields<Separator::kComma>(line, time, values);
+  const bool is_quoted = fault && line.find('"') != std::string_view::npos;
+  return is_quoted ? parse_plain(line, time, values) : fault;
+}
+
+std::optional<Fault> LineParser::parse_plain(std::string_view line, Time& time,
+                                             std::span<double> values) const {
+  const std::string plain = plain_csv(line, separator_);
+  auto fault = parse_fields<Separator::kComma>(plain, time, values);
+  if (fault) {
+    const auto at = static_cast<std::size_t>(fault->text.data() - plain.data());
+    fault->text = line.substr(at, fault->text.size());
+  }
+  return fault;
 }
 
 template <Separator separator>
@@ -170,6 +209,25 @@ std::optional<Fault> LineParser::parse_fields(std::string_view line, Time& time,
     if (const auto fault = parse_field<separator>(column, p, end, time, values)) return fault;
   }
   return std::nullopt;
+}
+
+std::string plain_csv(std::string_view line, Separator separator) {
+  const char between = separator == Separator::kSemicolon ? ';'
+                       : separator == Separator::kTab     ? '\t'
+                                                          : ',';
+  std::string plain(line);
+  bool is_quoted = false;
+  for (char& c : plain) {
+    if (c == '"') {
+      is_quoted = !is_quoted;
+      c = ' ';
+    } else if (c == between && !is_quoted) {
+      c = ',';
+    } else if (c == ',') {
+      c = '.';
+    }
+  }
+  return plain;
 }
 
 std::vector<std::string_view> split_fields(std::string_view line, Separator separator) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,11 +19,17 @@ namespace leeway {
 struct Fault {
   LineDamage reason{};
   std::string_view text{};
+  bool is_damage{true};
 };
 
+/// A line that completes no row, and is as it should be.
+inline constexpr Fault kNoRow{.reason = {}, .text = {}, .is_damage = false};
+
 enum class Separator {
-  kComma,  ///< a field may be empty, blanks around it do not count
-  kRuns,   ///< blanks, commas and semicolons, any number of them
+  kComma,      ///< a field may be empty, blanks around it do not count
+  kSemicolon,  ///< as kComma; a comma in a number is then the decimal point
+  kTab,        ///< likewise
+  kRuns,       ///< blanks, commas and semicolons, any number of them
 };
 
 /// What to do with a column of the file.
@@ -34,6 +41,7 @@ struct Column {
   double min{-std::numeric_limits<double>::max()};
   double max{std::numeric_limits<double>::max()};
   bool optional{false};  ///< NaN, empty and absent are allowed, and read as NaN
+  double scale{1.0};     ///< from the file's unit to ours; of time, seconds per count
 };
 
 /// Reads the wanted columns of a line.
@@ -46,6 +54,8 @@ class LineParser {
   std::optional<Fault> parse(std::string_view line, Time& time, std::span<double> values) const;
 
  private:
+  std::optional<Fault> parse_plain(std::string_view line, Time& time,
+                                   std::span<double> values) const;
   template <Separator separator>
   std::optional<Fault> parse_fields(std::string_view line, Time& time,
                                     std::span<double> values) const;
@@ -54,7 +64,8 @@ class LineParser {
   std::vector<Column> columns_;
 };
 
-/// Fills a row from a line, or tells what is wrong with it.
+/// Fills a row from a line, or tells what is wrong with it. At the end it is asked with an empty
+/// line for what it may still hold.
 template <class Row>
 using RowParser = std::function<std::optional<Fault>(std::string_view line, Row& row)>;
 
@@ -62,8 +73,12 @@ using RowParser = std::function<std::optional<Fault>(std::string_view line, Row&
 /// round, as for seconds since 1980. On success moves `first` behind it.
 std::optional<LineDamage> parse_time(const char*& first, const char* last, Time& time);
 
-/// The fields of a line, separated by any of the given characters; blanks around a field are
-/// trimmed. With Separator::kRuns no field is empty.
+/// The line with commas between its fields and points in its numbers, and blanks for quotes. What
+/// stands at a place of it stood there before.
+std::string plain_csv(std::string_view line, Separator separator);
+
+/// The fields of a line with points in its numbers, separated by commas or kRuns; blanks around a
+/// field are trimmed. With Separator::kRuns no field is empty.
 std::vector<std::string_view> split_fields(std::string_view line, Separator separator);
 
 bool is_number(std::string_view text);

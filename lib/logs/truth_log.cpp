@@ -57,11 +57,14 @@ struct TruthRowParser {
 std::unique_ptr<RecordSource<TruthRecord>> truth_source(LineReader lines) {
   const std::string expected = "a CSV header with " + join(kTruthPosition) + " (and " +
                                join(kTruthVelocity) + ", " + join(kTruthAttitude) + ")";
-  CsvHeader header = take_csv_header(lines, kTruthPosition, expected);
+  const LogFormat format;
+  std::vector<std::string> notes;
+  LogOpening log{{}, lines, format, notes};
+  CsvHeader header = take_csv_header(log, kTruthPosition, expected);
   header.use_group(kTruthVelocity);
   header.use_group(kTruthAttitude);
-  return std::make_unique<LogSource<TruthRecord>>(std::move(lines),
-                                                  TruthRowParser{header.parser()});
+  return std::make_unique<LogSource<TruthRecord>>(std::move(lines), TruthRowParser{header.parser()},
+                                                  "CSV", std::move(notes));
 }
 
 double mix(double a, double b, double fraction) { return a + fraction * (b - a); }

@@ -6,6 +6,7 @@
 
 #include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
+#include "leeway/logs/log_format.hpp"
 #include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/gnss_fix.hpp"
 
@@ -16,11 +17,13 @@ struct GnssLogOptions {
   double position_sigma_scale{1.0};  ///< multiplies the log's standard deviations
   double velocity_sigma_scale{1.0};
   Duration time_offset{0};  ///< added to every time, to put the log on the time line of the IMU's
+  LogFormat format{};
 };
 
 /// A reader of GNSS logs, plain or gzip, in constant memory. The layout is told from the content:
 ///
-/// - "CSV": columns found by name in any order, further ones ignored: t_s, lat_deg, lon_deg,
+/// - "CSV" of any dialect, columns found by name or an alias (docs/guide/log-formats.md) in any
+///   order, further ones noted in the summary: t_s, lat_deg, lon_deg,
 ///   height_m (ellipsoidal), pos_std_n_m, pos_std_e_m, pos_std_d_m; and all or none of vn_mps,
 ///   ve_mps, vd_mps, vel_std_n_mps, vel_std_e_mps, vel_std_d_mps. A row with an empty or NaN
 ///   velocity field has no velocity. Where heading_deg and heading_sigma_deg both are columns, a
@@ -30,10 +33,9 @@ struct GnssLogOptions {
 ///   height (m), standard deviations north, east, down (m); then, or not, velocity and its
 ///   deviations (m/s), NED.
 /// - "RTKLIB .pos": latitude, longitude, height (degrees or d m s) or x/y/z, with covariances. Its
-///   time is GPS time since 1980-01-06. UTC and JST are converted with 18 leap seconds, right from
-///   2017-01-01; earlier dates in them are out of range. Velocities without standard deviations, or
-///   with zeros for them, are not used. Where the printed correlations are rounded beyond a
-///   positive definite matrix, only its diagonal is used.
+///   time is GPS time since 1980-01-06; UTC and JST are converted. Without a header, GPS time.
+///   Velocities without standard deviations, or with zeros for them, are not used. Where the
+///   printed correlations are rounded beyond a positive definite matrix, only its diagonal is used.
 ///
 /// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
 /// a latitude beyond +-90 deg or a longitude beyond +-360 deg. So does a standard deviation not in

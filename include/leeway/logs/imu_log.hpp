@@ -7,6 +7,7 @@
 
 #include "leeway/earth/names.hpp"
 #include "leeway/logs/csv_writer.hpp"
+#include "leeway/logs/log_format.hpp"
 #include "leeway/logs/log_reader.hpp"
 #include "leeway/sensors/imu.hpp"
 
@@ -16,10 +17,12 @@ namespace leeway {
 struct ImuLogOptions {
   RateMeaning meaning{RateMeaning::kPoint};           ///< of logs of rates
   Eigen::Matrix3d C_bs{Eigen::Matrix3d::Identity()};  ///< sensor axes to body axes
+  LogFormat format{};
 };
 
 /// A reader of IMU logs, plain or gzip, in constant memory. The layout is told from the content.
-/// CSV columns are found by name, in any order; further ones are ignored.
+/// CSV may be of any dialect; its columns are found by name or an alias
+/// (docs/guide/log-formats.md), in any order; further ones are noted in the summary.
 ///
 /// - "CSV, rates": t_s, gx_radps, gy_radps, gz_radps, ax_mps2, ay_mps2, az_mps2.
 /// - "CSV, increments": t_s, dt_s, dtheta_x_rad .. dtheta_z_rad, dv_x_mps .. dv_z_mps: lossless.

@@ -32,6 +32,9 @@ class LineReader {
   /// Makes next() deliver the line it just delivered again. @pre next() delivered one.
   void unread();
 
+  /// Text that next() has yet to deliver, as much as was read: some KiB unless the file is shorter.
+  std::string_view preview() const { return {buffer_.data() + begin_, end_ - begin_}; }
+
   /// Whether the line just delivered was longer than kMaxLineBytes: its rest is skipped.
   bool overlong() const { return overlong_; }
 

@@ -21,12 +21,13 @@ enum class LineDamage {
   kDuplicateTime,
   kTimeJumpsAhead,  ///< of the lines after it, which go on from before the jump
   kOutOfRange,
-  kTooLong,  ///< LineReader::kMaxLineBytes
+  kTooLong,   ///< LineReader::kMaxLineBytes
+  kChecksum,  ///< missing, or not that of the record
 };
 constexpr auto names(LineDamage) {
   return std::array{"not a number",   "missing field", "not finite",
                     "time goes back", "time repeated", "time jumps ahead of the lines after it",
-                    "out of range",   "line too long"};
+                    "out of range",   "line too long", "checksum does not match"};
 }
 inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 
@@ -41,6 +42,7 @@ struct LogSummary {
   /// was added to the next record.
   std::int64_t carried_over{0};
   std::array<std::int64_t, kLineDamageCount> damaged{};  ///< indexed by LineDamage
+  std::vector<std::string> notes{};     ///< on the whole log: columns not used, units guessed
   std::vector<std::string> messages{};  ///< of the first damaged lines: path:line:column: reason
   std::string incomplete{};             ///< empty, or why the file ended early (LineReader::damage)
 

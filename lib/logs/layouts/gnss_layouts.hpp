@@ -21,6 +21,7 @@ using GnssLayout = LogLayout<GnssFix>;
 GnssLayout gnss_csv();
 GnssLayout gnss_kf_gins();
 GnssLayout rtklib_pos();
+GnssLayout nmea();
 
 /// The table of the layouts (gnss_log.cpp).
 const std::vector<GnssLayout>& gnss_layouts();
@@ -52,6 +53,7 @@ struct GnssFields {
 
   LineParser fields{};
   std::optional<WeekUnroller> week{};  ///< where times are seconds of week
+  std::size_t told_sigmas{0};          ///< LogFormat::gnss_sigma, which replaces the log's
 
   std::optional<Fault> operator()(std::string_view line, GnssFix& fix);
 };

@@ -15,30 +15,35 @@ constexpr std::array kIncrements{
     NamedColumn{"dtheta_z_rad", angular(2)}, NamedColumn{"dv_x_mps", linear(0)},
     NamedColumn{"dv_y_mps", linear(1)},      NamedColumn{"dv_z_mps", linear(2)}};
 
-RowParser<ImuRow> rates_parser(const LogHead& head, LineReader& lines) {
+RowParser<ImuRow> rates_parser(LogOpening& log) {
   // Of a header that has neither, the error is what it lacks of the nearer one.
-  const CsvHeader header(head.line, lines.path());
-  const bool is_rates = header.missing(kRates).size() <= header.missing(kIncrements).size();
+  const CsvHeader seen = CsvHeader::understood(log.head.line, log.lines.path(), log.format);
+  const bool is_rates = seen.missing(kRates).size() <= seen.missing(kIncrements).size();
   const std::span<const NamedColumn> increments = kIncrements;
-  return ImuFields{
-      take_csv_header(lines, is_rates ? kRates : increments, list_of(imu_layouts())).parser(),
-      true};
+  const CsvHeader header =
+      take_csv_header(log, is_rates ? kRates : increments, list_of(imu_layouts()), kSlowestImuS);
+  header.note(log.notes);
+  return ImuFields{header.parser(), true, WeekUnroller{}};
 }
 
-RowParser<ImuRow> increments_parser(const LogHead&, LineReader& lines) {
-  return ImuFields{take_csv_header(lines, kIncrements, list_of(imu_layouts())).parser()};
+RowParser<ImuRow> increments_parser(LogOpening& log) {
+  const CsvHeader header = take_csv_header(log, kIncrements, list_of(imu_layouts()), kSlowestImuS);
+  header.note(log.notes);
+  return ImuFields{header.parser(), false, WeekUnroller{}};
 }
 
 }  // namespace
 
 ImuLayout imu_csv_rates() {
   return {"CSV, rates", "a CSV header with " + join(kRates) + " (rates)",
-          [](const LogHead&) { return true; }, rates_parser};
+          [](const LogOpening&) { return true; }, rates_parser};
 }
 
 ImuLayout imu_csv_increments() {
   return {"CSV, increments", "one with " + join(kIncrements) + " (increments)",
-          [](const LogHead& head) { return CsvHeader(head.line, "").has(kIncrements); },
+          [](const LogOpening& log) {
+            return CsvHeader::understood(log.head.line, "", log.format).has(kIncrements);
+          },
           increments_parser};
 }
 

@@ -6,12 +6,12 @@ namespace {
 constexpr std::array kKfGinsColumns{kTimeColumn, angular(0), angular(1), angular(2),
                                     linear(0),   linear(1),  linear(2)};
 
-bool is_kf_gins_imu(const LogHead& head) {
-  return is_bare_numbers(head.line) &&
-         split_fields(head.line, Separator::kRuns).size() >= kKfGinsColumns.size();
+bool is_kf_gins_imu(const LogOpening& log) {
+  return is_bare_numbers(log.head.line) &&
+         split_fields(log.head.line, Separator::kRuns).size() >= kKfGinsColumns.size();
 }
 
-RowParser<ImuRow> kf_gins_imu_parser(const LogHead&, LineReader&) {
+RowParser<ImuRow> kf_gins_imu_parser(LogOpening&) {
   return ImuFields{.fields = {Separator::kRuns, {kKfGinsColumns.begin(), kKfGinsColumns.end()}},
                    .week = WeekUnroller{}};
 }

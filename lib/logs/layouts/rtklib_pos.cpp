@@ -10,16 +10,13 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
+#include "lib/logs/calendar.hpp"
 #include "lib/logs/layouts/gnss_layouts.hpp"
 
 namespace leeway {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr Duration kLeapSeconds = 18s;
-constexpr std::chrono::sys_days kLeapSecondsFrom = std::chrono::year{2017} / 1 / 1;
-constexpr std::chrono::sys_days kGpsEpoch = std::chrono::year{1980} / 1 / 6;
 
 // Slots: three components each; covariances in the file's order.
 enum Slot {
@@ -139,14 +136,10 @@ std::optional<LineDamage> parse_date(const char*& p, const char* end, int year, 
       !parse_part(p, end, ':', hour) || !parse_part(p, end, ':', minute)) {
     return LineDamage::kNotANumber;
   }
-  if (month < 1 || month > 12 || day < 1 || day > 31) return LineDamage::kOutOfRange;
-  const std::chrono::year_month_day date{std::chrono::year{year},
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
-  if (!date.ok() || year < 1980 || year >= 2200) return LineDamage::kOutOfRange;
+  const auto date = day_since_gps_epoch(year, month, day);
+  if (!date) return LineDamage::kOutOfRange;
   if (hour < 0 || hour > 23 || minute < 0 || minute > 59) return LineDamage::kOutOfRange;
-  time = std::chrono::sys_days(date) - kGpsEpoch + std::chrono::hours{hour} +
-         std::chrono::minutes{minute};
+  time = *date + std::chrono::hours{hour} + std::chrono::minutes{minute};
   return std::nullopt;
 }
 
@@ -180,7 +173,7 @@ class RtklibParser {
   std::optional<Fault> parse_epoch(std::string_view& line, Time& time) const;
 
   LineParser fields_{};
-  Duration to_gps_{0};  // from the log's calendar
+  Duration to_utc_{0};  // from the log's calendar, where it is not that of GPS
   bool is_utc_{false};
   bool is_ecef_{false};
   bool has_columns_{false};
@@ -202,8 +195,7 @@ void RtklibParser::read_header(std::string_view line, const std::string& path) {
 void RtklibParser::read_columns(std::string_view line, const std::string& path) {
   auto titles = split_fields(line.substr(line.find('%') + 1), Separator::kRuns);
   is_utc_ = titles.front() == "UTC" || titles.front() == "JST";
-  to_gps_ = is_utc_ ? kLeapSeconds : Duration{0};
-  if (titles.front() == "JST") to_gps_ -= 9h;
+  if (titles.front() == "JST") to_utc_ = -9h;
   is_ecef_ = contains(line, "x-ecef(");
   const bool is_dms = contains(line, "latitude(d'");
   // The names without their units, as a CSV header whose fields parse() then finds.
@@ -258,27 +250,70 @@ std::optional<Fault> RtklibParser::parse_epoch(std::string_view& line, Time& tim
   if (!damage) damage = parse_time(p, end, seconds);
   if (!damage && p != end && !is_separator(*p)) damage = LineDamage::kNotANumber;
   since_epoch += seconds.time_since_epoch();
-  if (!damage && is_utc_ && since_epoch < kLeapSecondsFrom - kGpsEpoch) {
-    damage = LineDamage::kOutOfRange;
-  }
+  if (is_utc_) since_epoch += to_utc_ + gps_minus_utc(since_epoch + to_utc_);
   if (damage) {
     constexpr std::size_t kTimeBytes = 24;
     return Fault{*damage, line.substr(static_cast<std::size_t>(begin - line.data()), kTimeBytes)};
   }
-  time = Time{since_epoch + to_gps_};
+  time = Time{since_epoch};
   line.remove_prefix(static_cast<std::size_t>(p - line.data()));
   return std::nullopt;
 }
 
-bool is_rtklib(const LogHead& head) {
-  return !head.comments.empty() && head.comments.front().starts_with('%');
+/// What the lines of rtkrcv and of Emlid's .LLH hold, which have no header.
+constexpr std::string_view kGeodeticTitles =
+    "%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) "
+    "sdun(m) age(s) ratio vn(m/s) ve(m/s) vu(m/s) sdvn sdve sdvu sdvne sdveu sdvun";
+constexpr std::string_view kEcefTitles =
+    "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns sdx(m) sdy(m) sdz(m) sdxy(m) sdyz(m) sdzx(m) "
+    "age(s) ratio vx(m/s) vy(m/s) vz(m/s) sdvx sdvy sdvz sdvxy sdvyz sdvzx";
+// Without velocity, with it, and with its covariances; the time is two of them.
+constexpr std::array<std::size_t, 3> kHeaderlessFields{15, 21, 24};
+
+double number_of(std::string_view text) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
 }
 
-RowParser<GnssFix> rtklib_parser(const LogHead& head, LineReader& lines) {
+bool is_whole(std::string_view text) {
+  return text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// A date or a week, seconds, and then the numbers of a solution, Q and ns among them.
+bool is_headerless(std::string_view line) {
+  const auto fields = split_fields(line, Separator::kRuns);
+  const auto& counts = kHeaderlessFields;
+  if (std::find(counts.begin(), counts.end(), fields.size()) == counts.end()) return false;
+  const bool is_date = fields[0].size() == 10 && fields[0][4] == '/' && fields[0][7] == '/';
+  return (is_date || is_whole(fields[0])) && is_whole(fields[5]) && is_whole(fields[6]);
+}
+
+/// The titles of a line without a header. An e/n/u baseline cannot be told from degrees.
+std::string titles_of(std::string_view line) {
+  const auto fields = split_fields(line, Separator::kRuns);
+  const double length =
+      std::hypot(number_of(fields[2]), number_of(fields[3]), number_of(fields[4]));
+  return std::string(length > 6e6 ? kEcefTitles : kGeodeticTitles);
+}
+
+bool is_rtklib(const LogOpening& log) {
+  if (log.head.comments.empty()) return is_headerless(log.head.line);
+  return !log.head.comments.empty() && log.head.comments.front().starts_with('%');
+}
+
+RowParser<GnssFix> rtklib_parser(LogOpening& log) {
   RtklibParser parser;
-  for (const std::string& line : head.comments) parser.read_header(line, lines.path());
+  for (const std::string& line : log.head.comments) parser.read_header(line, log.lines.path());
+  if (!parser.has_columns() && is_headerless(log.head.line)) {
+    parser.read_header(titles_of(log.head.line), log.lines.path());
+    log.notes.push_back(
+        "an RTKLIB solution without its header: times are taken to be GPS time, heights to be "
+        "above the ellipsoid");
+  }
   if (parser.has_columns()) return parser;
-  throw Error(lines.path() + ": no RTKLIB column header; set the RTKLIB option out-outhead to on");
+  throw Error(log.lines.path() +
+              ": no RTKLIB column header; set the RTKLIB option out-outhead to on");
 }
 
 }  // namespace

@@ -7,10 +7,10 @@ namespace leeway::cli {
 namespace {
 
 /// The times of the first fix and the last one, which tell how far a replay has come.
-std::pair<Time, Time> span_of(const std::filesystem::path& log) {
+std::pair<Time, Time> span_of(const std::filesystem::path& log, const GnssLogOptions& options) {
   std::optional<Time> first;
   Time last{};
-  GnssLogReader gnss(log);
+  GnssLogReader gnss(log, options);
   while (const auto fix = gnss.next()) {
     first = first.value_or(fix->time);
     last = fix->time;
@@ -38,7 +38,7 @@ void replay(FuseJob& job, NavigatorConfig config, FuseSeries* series) {
     Progress bar(job.input.imu.parent_path().filename().string());
     sim::ReplayObserver observer = series ? series->observer() : sim::ReplayObserver{};
     if (bar.visible() && std::filesystem::is_regular_file(job.input.gnss)) {
-      observer.progress = [&bar, span = span_of(job.input.gnss)](Time t) {
+      observer.progress = [&bar, span = span_of(job.input.gnss, job.input.gnss_options)](Time t) {
         const auto [first, last] = span;
         if (first < last) bar.show(to_seconds(t - first) / to_seconds(last - first));
       };
@@ -178,6 +178,7 @@ void add_solution_options(CLI::App& app, FuseOptions& options) {
 
 void add_options(CLI::App& app, FuseOptions& options) {
   add_log_options(app, options.logs);
+  add_log_form_options(app, options.logs.form);
   add_start_options(app, options.logs);
   add_filter_options(app, options);
   add_vehicle_options(app, options.vehicle);

@@ -43,6 +43,9 @@ void inspect(FuseJob& job) {
 FuseJob job_with_options(const FuseLogs& logs) {
   FuseJob job;
   job.input = logs.files;
+  LogForms forms = log_forms(logs.form);
+  job.input.imu_options.format = std::move(forms.imu);
+  job.input.gnss_options.format = std::move(forms.gnss);
   if (logs.gnss_sigma_scale) {
     job.input.gnss_options.position_sigma_scale = logs.gnss_sigma_scale->x();
     job.input.gnss_options.velocity_sigma_scale = logs.gnss_sigma_scale->y();

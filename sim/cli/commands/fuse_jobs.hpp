@@ -3,6 +3,7 @@
 #pragma once
 
 #include "leeway/sim/replay/replay.hpp"
+#include "sim/cli/log_options.hpp"
 #include "sim/cli/options.hpp"
 
 namespace leeway::cli {
@@ -18,6 +19,7 @@ struct FuseLogs {
   std::optional<Eigen::Vector2d> gnss_sigma_scale{};  ///< of position, of velocity
   std::optional<double> start_heading_deg{};
   double start_heading_sigma_deg{5.0};
+  LogForm form{};
 };
 
 /// Aiding by what is known of the vehicle.

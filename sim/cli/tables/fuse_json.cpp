@@ -21,6 +21,7 @@ Json log_json(const FuseLog& log) {
           {"carried_over", log.summary.carried_over},
           {"damaged_lines", log.summary.damaged_lines()},
           {"damaged", damaged},
+          {"notes", log.summary.notes},
           {"messages", log.summary.messages},
           {"incomplete", incomplete.empty() ? Json() : Json(incomplete)}};
 }

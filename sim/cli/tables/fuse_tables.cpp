@@ -149,6 +149,9 @@ void warn_of_clock(const Health& health, const std::string& where) {
 
 void warn_of(const FuseLog& log) {
   const LogSummary& summary = log.summary;
+  for (const std::string& note : summary.notes) {
+    spdlog::warn("{} log {}: {}", log.title, log.path.string(), note);
+  }
   if (summary.carried_over > 0) {
     spdlog::warn(
         "{} log {}: {} of {} lines repeat the time of the line before: their increments "

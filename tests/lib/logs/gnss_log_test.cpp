@@ -309,7 +309,8 @@ TEST_CASE("RTKLIB in degrees, minutes, seconds, with commas, week and UTC") {
   CHECK(one_line("UTC", "2025/08/28 11:59:42.000") == gpst);  // 18 leap seconds behind GPS
   CHECK(one_line("JST", "2025/08/28 20:59:42.000") == gpst);
   CHECK(one_line("UTC", "2381 388782.0") == gpst);
-  CHECK(!one_line("UTC", "2016/12/31 23:59:59.0"));
+  CHECK(one_line("UTC", "2016/12/31 23:59:59.0") == one_line("GPST", "2017/01/01 00:00:16.0"));
+  CHECK(one_line("UTC", "1998/06/01 00:00:00.0") == one_line("GPST", "1998/06/01 00:00:12.0"));
   CHECK(!one_line("GPST", "2025/02/29 12:00:00.0"));
   CHECK(!one_line("GPST", "2025/264/28 12:00:00.0"));  // 264 = 8 modulo 256
   CHECK(!one_line("GPST", "2025/08/28 24:00:00.0"));

@@ -109,6 +109,14 @@ TEST_CASE("a corrupt gzip stream ends with a message, not silently") {
   CHECK(text.size() - delivered <= 64 * 1024);  // one chunk of 32 KiB, and what is in the buffer
 }
 
+TEST_CASE("a line without an end ends the file with a message") {
+  LineReader reader("/dev/zero");
+  REQUIRE(reader.next());
+  CHECK(reader.overlong());
+  CHECK(!reader.next());
+  CHECK(contains(reader.damage(), "/dev/zero: line 1 has no end within 64 MiB"));
+}
+
 TEST_CASE("an over-long line is cut, flagged and skipped in bounded memory") {
   const TempDir dir;
   for (const std::size_t excess : {std::size_t{1}, std::size_t{100'000}, std::size_t{10'000'000}}) {
