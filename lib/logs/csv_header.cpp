@@ -66,7 +66,8 @@ CsvHeader CsvHeader::understood(std::string_view line, std::string path, const L
   if (separator == Separator::kRuns) {
     names.clear();
     for (const std::string_view name : split_fields(line, separator)) {
-      names += (names.empty() ? "" : ",") + std::string(name);
+      if (!names.empty()) names += ',';
+      names += name;
     }
   }
   CsvHeader header(names, std::move(path));
@@ -187,23 +188,23 @@ void CsvHeader::settle_time_unit(std::string_view rows, double slowest_s,
                                  std::vector<std::string>& notes) {
   const std::vector<double> steps = steps_of(rows);
   if (steps.size() < kRowsForUnit) return;
-  constexpr std::array kUnits{"s", "ms", "us", "ns"};
+  constexpr std::array kTimeUnits{"s", "ms", "us", "ns"};
   const std::size_t at = index_of("t_s");
   const double step = median(steps) * (names_unit_[at] ? scales_[at] : 1.0);
   double bound = names_unit_[at] ? kContradiction * slowest_s : slowest_s;
   std::size_t unit = 0;
-  for (; unit + 1 < kUnits.size() && step > bound; bound *= 1e3) ++unit;
+  for (; unit + 1 < kTimeUnits.size() && step > bound; bound *= 1e3) ++unit;
   if (unit == 0) return;
   if (names_unit_[at]) {
     unit = std::min(unit + static_cast<std::size_t>(std::lround(-std::log10(scales_[at]) / 3.0)),
-                    kUnits.size() - 1);
+                    kTimeUnits.size() - 1);
     throw Error(path_ + ": the log has a step of " + to_text(step) +
                 " s between rows by its column " + titles_[at] + "; are its times in " +
-                kUnits[unit] + "? Then say --time-unit " + kUnits[unit] +
+                kTimeUnits[unit] + "? Then say --time-unit " + kTimeUnits[unit] +
                 ", or --time-unit s if they are right");
   }
   columns_[at].scale = std::pow(1e-3, static_cast<double>(unit));
-  notes.push_back("times are taken to be in " + std::string(kUnits[unit]) + ", by their step of " +
+  notes.push_back("times are taken to be in " + std::string(kTimeUnits[unit]) + ", by their step of " +
                   to_text(median(steps)) + " in column " + titles_[at] +
                   "; if not, say --time-unit");
 }

@@ -16,16 +16,16 @@
 namespace leeway {
 namespace {
 
-constexpr double kImuRateHz = 50.0;
-constexpr double kTurnsS = 120.0;
-const sim::GnssErrorModel kFixed{{0.02, 0.02, 0.03}, {0.05, 0.05, 0.05}};  // ambiguities
-const sim::GnssErrorModel kCode{{1.5, 1.5, 2.0}, {0.05, 0.05, 0.05}};
+constexpr double kClockImuRateHz = 50.0;
+constexpr double kClockTurnsS = 120.0;
+const sim::GnssErrorModel kFixedAmbiguities{{0.02, 0.02, 0.03}, {0.05, 0.05, 0.05}};
+const sim::GnssErrorModel kCodeFixes{{1.5, 1.5, 2.0}, {0.05, 0.05, 0.05}};
 
 /// A motion with what an IMU without errors measures of it.
 struct Way {
   explicit Way(sim::Trajectory way)
       : trajectory(std::move(way)),
-        truth(sim::true_increments(trajectory, kImuRateHz, trajectory.duration_s)) {}
+        truth(sim::true_increments(trajectory, kClockImuRateHz, trajectory.duration_s)) {}
 
   sim::Trajectory trajectory;
   std::vector<ImuIncrement> truth;
@@ -68,8 +68,8 @@ struct Watch {
   double position_s{0.0};
   double velocity_s{0.0};
   double from_s{0.0};  ///< when fixes begin to be late
-  double duration_s{kTurnsS};
-  sim::GnssErrorModel gnss{kCode};
+  double duration_s{kClockTurnsS};
+  sim::GnssErrorModel gnss{kCodeFixes};
   bool has_velocity{true};
 
   /// Beside a filter that begins at the truth, as far as it claims.
@@ -132,7 +132,7 @@ TEST_CASE("50 ms are detected by positions to 2 cm alone") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     const ClockOffset found =
-        Watch{.position_s = 0.05, .gnss = kFixed, .has_velocity = false}(seed);
+        Watch{.position_s = 0.05, .gnss = kFixedAmbiguities, .has_velocity = false}(seed);
     CHECK(found.age.beyond_chance);
     CHECK(std::abs(found.age.value_s - 0.05) < 4.0 * found.age.sigma_s + 0.002);
   }
@@ -153,7 +153,7 @@ TEST_CASE("right clocks are never called wrong, in 200 trials" * doctest::test_s
 }
 
 TEST_CASE("on a straight at constant speed nothing shows, and nothing is claimed") {
-  const Way straight(sim::straight({.duration_s = kTurnsS + 1.0}));
+  const Way straight(sim::straight({.duration_s = kClockTurnsS + 1.0}));
   Watch watch{.way = straight, .position_s = 0.2, .velocity_s = 0.2};
   const ClockOffset found = watch(1);
   CHECK_FALSE(found.age.beyond_chance);
@@ -163,7 +163,7 @@ TEST_CASE("on a straight at constant speed nothing shows, and nothing is claimed
 TEST_CASE("velocities that are late alone are told from clocks") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
-    const ClockOffset found = Watch{.velocity_s = 0.2, .gnss = kFixed}(seed);
+    const ClockOffset found = Watch{.velocity_s = 0.2, .gnss = kFixedAmbiguities}(seed);
     CHECK(found.age.beyond_chance);
     CHECK(found.of_velocity);
     CHECK(std::abs(found.age.value_s - 0.2) < 4.0 * found.age.sigma_s);
