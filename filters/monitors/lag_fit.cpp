@@ -7,13 +7,13 @@
 namespace leeway {
 namespace {
 
-constexpr double kSlowS = 2.0;        // accelerations in traffic last for some seconds
+constexpr double kSlowS = 3.0;        // accelerations in traffic last for some seconds
 constexpr double kSettlesS = 10.0;    // until what is slow is known
 constexpr double kMemoryS = 240.0;    // what is older counts by less than a third
 constexpr double kHeadingRad = 0.05;  // 3 deg: what a heading may be wrong by
 constexpr double kLeastAgeS = 0.04;   // receivers' velocities lag by half an epoch: 25 ms at 20 Hz
-constexpr double kBeyondChanceSigmas = 4.0;
-constexpr double kTellingSquares = 16.0;  // squared sigmas by which an age explains more than none
+constexpr double kBeyondChanceSigmas = 4.5;
+constexpr double kTellingSquares = 20.0;  // squared sigmas by which an age explains more than none
 constexpr double kLeastDof = 60.0;
 constexpr double kHuberSigmas = 3.0;
 constexpr int kLevelDof = 2;
@@ -62,6 +62,7 @@ Eigen::Vector3d LagFit::fast_part(Slow& slow, const Eigen::Vector3d& value, doub
 }
 
 void LagFit::add(const Pairs& pairs, const Eigen::Vector3d& down, double sigma, double t_s) {
+  if (last_s_ && t_s - *last_s_ > kSlowS) restart();  // too far apart to foresee anything
   const double dt_s = t_s - last_s_.value_or(t_s);
   if (last_s_ && !(dt_s > 0.0)) return;
   const auto level = [&](const Eigen::Vector3d& v) {
