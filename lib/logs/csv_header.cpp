@@ -204,8 +204,8 @@ void CsvHeader::settle_time_unit(std::string_view rows, double slowest_s,
                 ", or --time-unit s if they are right");
   }
   columns_[at].scale = std::pow(1e-3, static_cast<double>(unit));
-  notes.push_back("times are taken to be in " + std::string(kTimeUnits[unit]) + ", by their step of " +
-                  to_text(median(steps)) + " in column " + titles_[at] +
+  notes.push_back("times are taken to be in " + std::string(kTimeUnits[unit]) +
+                  ", by their step of " + to_text(median(steps)) + " in column " + titles_[at] +
                   "; if not, say --time-unit");
 }
 

@@ -224,9 +224,10 @@ Run with_clock_off() {
   return run;
 }
 
-TEST_CASE("clocks 0.2 s apart: a navigator that is told to estimate them is as good as one with "
-          "right ones" *
-          doctest::test_suite("heavy")) {
+TEST_CASE(
+    "clocks 0.2 s apart: a navigator that is told to estimate them is as good as one with "
+    "right ones" *
+    doctest::test_suite("heavy")) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);
     Run right = car_run(500.0);

@@ -29,7 +29,7 @@ export function makeReports(program: string, scenes: string, work: string): Made
     made("atlas", ["matrix"], "--scene", "frozen-transition,dead-row,coning", "--short"),
     made(
       "reduce", ["terms-error", "terms-cost"],
-      "--scene", join(scenes, "tunnel-60s.toml"), "--trials", "8", "--repeat", "1",
+      "--scene", join(scenes, "tunnel-60s.toml"), "--trials", "20", "--repeat", "1",
     ),
     made(
       "campaign", ["fan", "axes"],
