@@ -1,11 +1,11 @@
 #include "leeway/monitors/clock_monitor.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "leeway/earth/earth.hpp"
+#include "leeway/model/gnss_measurement.hpp"
 
 namespace leeway {
 namespace {
@@ -33,11 +33,11 @@ void ClockMonitor::push(const ImuIncrement& inc, const Estimate& estimate) {
   motion_.v_e_mps += dv_e_mps;
   if (count_ > 0 && motion_.t_s - point(0).t_s + 0.5 * inc.dt_s < kStepS) return;
 
-  const Eigen::Vector3d lever_e_m = nav.q_eb * lever_arm_b_m_;
-  rate_e_radps_ = nav.q_eb * (inc.dtheta_b_rad / inc.dt_s - estimate.bias.b_g_radps);
+  const Eigen::Vector3d omega_ib_b_radps = inc.dtheta_b_rad / inc.dt_s;
+  rate_e_radps_ = nav.q_eb * (omega_ib_b_radps - estimate.bias.b_g_radps);
   Motion antenna = motion_;
-  antenna.way_e_m += lever_e_m;
-  antenna.v_e_mps += rate_e_radps_.cross(lever_e_m);
+  antenna.way_e_m += antenna_position_e(estimate, lever_arm_b_m_) - nav.r_e_m;
+  antenna.v_e_mps += antenna_velocity_e(estimate, lever_arm_b_m_, omega_ib_b_radps) - nav.v_e_mps;
   if (count_ > 0) {
     acceleration_e_mps2_ = (antenna.v_e_mps - point(0).v_e_mps) / (antenna.t_s - point(0).t_s);
   }

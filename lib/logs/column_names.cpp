@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "leeway/earth/earth.hpp"
 #include "leeway/earth/error.hpp"
+#include "leeway/earth/units.hpp"
 #include "lib/logs/text_fields.hpp"
 
 namespace leeway {
@@ -45,21 +46,19 @@ struct Unit {
   double scale;
   std::string_view names;
 };
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kStandardGravity = 9.80665;  // m/s^2, by definition
 constexpr std::array kUnits{
     Unit{Dimension::kTime, 1.0, "s sec secs seconds"},
     Unit{Dimension::kTime, 1e-3, "ms msec milliseconds"},
     Unit{Dimension::kTime, 1e-6, "us usec \xC2\xB5s \xCE\xBCs microseconds"},
     Unit{Dimension::kTime, 1e-9, "ns nsec nanoseconds"},
     Unit{Dimension::kAngularRate, 1.0, "rad/s radps rad_s rads"},
-    Unit{Dimension::kAngularRate, 1.0 / kDegPerRad, "deg/s dps degps deg_s \xC2\xB0/s"},
-    Unit{Dimension::kAngularRate, 1e-3 / kDegPerRad, "mdps mdeg/s"},
+    Unit{Dimension::kAngularRate, kRadPerDeg, "deg/s dps degps deg_s \xC2\xB0/s"},
+    Unit{Dimension::kAngularRate, 1e-3 * kRadPerDeg, "mdps mdeg/s"},
     Unit{Dimension::kAcceleration, 1.0, "m/s^2 m/s2 m/s\xC2\xB2 mps2 m_s2 m/s/s"},
-    Unit{Dimension::kAcceleration, kStandardGravity, "g g0"},
-    Unit{Dimension::kAcceleration, 1e-3 * kStandardGravity, "mg"},
+    Unit{Dimension::kAcceleration, kStandardGravityMps2, "g g0"},
+    Unit{Dimension::kAcceleration, 1e-3 * kStandardGravityMps2, "mg"},
     Unit{Dimension::kAngle, 1.0, "deg degrees \xC2\xB0"},
-    Unit{Dimension::kAngle, kDegPerRad, "rad"},
+    Unit{Dimension::kAngle, 1.0 / kRadPerDeg, "rad"},
     Unit{Dimension::kAngle, 1e-7, "1e-7deg deg_e7 dege7 e7"},
     Unit{Dimension::kLength, 1.0, "m"},
     Unit{Dimension::kLength, 1e-3, "mm"},
