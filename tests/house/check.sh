@@ -11,7 +11,7 @@ readonly order=(
   lib/earth lib/sensors lib/strapdown lib/logs
   filters/model filters/covariance filters/ekf filters/alternatives filters/monitors filters/navigator
   sim/tools sim/motion sim/sensors sim/scene sim/analysis sim/trials sim/compare sim/reduce
-  sim/replay sim/atlas sim/report sim/cli)
+  sim/inspect sim/replay sim/atlas sim/report sim/cli)
 readonly max_lines=350 max_files=22
 
 layers=()

@@ -1,0 +1,38 @@
+/// @file
+/// A look at whole logs, without a filter.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "leeway/logs/gnss_log.hpp"
+#include "leeway/logs/imu_log.hpp"
+#include "leeway/sim/inspect/log_look.hpp"
+
+namespace leeway::sim {
+
+/// Logs to look at. An empty path: there is none.
+struct LogsToInspect {
+  std::filesystem::path imu{};
+  std::filesystem::path gnss{};
+  std::filesystem::path odometer{};
+  ImuLogOptions imu_options{};
+  GnssLogOptions gnss_options{};
+};
+
+/// What was read, and what it looks like.
+struct InspectedLogs {
+  LogLook look{};
+  std::string imu_layout{};
+  std::string gnss_layout{};
+  LogSummary imu_summary{};
+  LogSummary gnss_summary{};
+};
+
+/// The look at logs from end to end, in constant memory.
+/// @param progress  called now and then with the time reached; may be empty
+/// @throws Error when a file cannot be read.
+InspectedLogs inspect(const LogsToInspect& logs, const std::function<void(Time)>& progress = {});
+
+}  // namespace leeway::sim

@@ -1,0 +1,91 @@
+/// @file
+/// What is in logs: their figures, and findings on what is wrong with them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "leeway/earth/names.hpp"
+
+namespace leeway::sim {
+
+/// Certainty of a finding. A certain one leaves no second explanation.
+enum class Certainty { kNote, kLikely, kCertain };
+constexpr auto names(Certainty) { return std::array{"note", "likely", "certain"}; }
+
+/// One thing that a log says of itself or that two logs say of each other.
+struct Finding {
+  Certainty certainty{};
+  std::string log{};     ///< "imu", "gnss" or the name of an aiding sensor
+  std::string about{};   ///< for scripts: "accelerometer-unit"
+  std::string text{};    ///< the figure, and why it is wrong
+  std::string remedy{};  ///< the option that mends it; empty: there is none
+};
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Figures of the times of a log.
+struct TimeFigures {
+  std::int64_t records{0};
+  double first_s{kUnknown};
+  double last_s{kUnknown};
+  double step_s{kUnknown};    ///< the usual time between two records, the median of the first 1000
+  double jitter_s{kUnknown};  ///< root mean square of the steps about it, gaps and bursts aside
+  std::int64_t gaps{0};       ///< steps above 1.5 of it
+  double longest_gap_s{0.0};
+  std::int64_t bursts{0};    ///< steps below half of it
+  std::int64_t sessions{1};  ///< parted by a minute without a record
+};
+
+/// Figures of an IMU log, in the axes of the increments.
+struct ImuFigures {
+  TimeFigures time{};
+  double specific_force_mps2{kUnknown};  ///< median of the magnitudes of means over a second
+  Eigen::Vector3d up_b{Eigen::Vector3d::Constant(kUnknown)};  ///< unit vector, the mean one
+  /// Unit vector: where the log gains speed. NaN without speed changes to see it by.
+  Eigen::Vector3d forward_b{Eigen::Vector3d::Constant(kUnknown)};
+  /// Channels x, y, z of the gyros, then of the accelerometers, that never change.
+  std::array<bool, 6> is_stuck{};
+  /// Samples at the largest magnitude of their sensor, where it is one of a full scale.
+  std::int64_t saturated{0};
+};
+
+/// Figures of a GNSS log.
+struct FixFigures {
+  TimeFigures time{};
+  std::int64_t with_velocity{0};
+  std::int64_t repeated{0};         ///< that repeat the one before to the bit
+  std::int64_t zeros{0};            ///< at 0 deg, 0 deg
+  double claimed_h_m{kUnknown};     ///< mean standard deviation of an axis, horizontal
+  double scatter_h_m{kUnknown};     ///< of an axis, from one fix to the next, motion taken out
+  double wander_h_m{kUnknown};      ///< the same over ten seconds
+  double velocity_lag_s{kUnknown};  ///< how late velocities are against positions
+  double velocity_lag_sigma_s{kUnknown};
+  double velocity_lag_share{0.0};  ///< of what positions and velocities differ by that it explains
+};
+
+/// Figures of turns and speeds that two logs share.
+struct SharedFigures {
+  double clock_offset_s{kUnknown};  ///< to be added to GNSS times
+  double clock_offset_sigma_s{kUnknown};
+  double turn_ratio{kUnknown};  ///< turn of the course over that of the gyros, about down
+  double turn_ratio_sigma{kUnknown};
+  double antenna_lead_m{kUnknown};  ///< ahead of the point that does not slide sideways
+  double odometer_ratio{kUnknown};  ///< odometer over GNSS speed
+};
+
+/// All of it.
+struct LogLook {
+  ImuFigures imu{};
+  FixFigures gnss{};
+  SharedFigures shared{};
+  std::vector<Finding> findings{};  ///< the certain ones first
+
+  bool is_certainly_wrong() const;
+};
+
+}  // namespace leeway::sim

@@ -1,0 +1,143 @@
+#include <algorithm>
+
+#include "leeway/logs/scalar_log.hpp"
+#include "leeway/navigator/aidings.hpp"
+#include "leeway/sim/inspect/inspect_logs.hpp"
+#include "sim/cli/command.hpp"
+#include "sim/cli/log_options.hpp"
+#include "sim/cli/tables/look_tables.hpp"
+
+namespace leeway::cli {
+namespace {
+
+struct InfoOptions {
+  std::vector<std::filesystem::path> files{};
+  LogForm form{};
+  Output output{};
+};
+
+/// What opens, or what it says when it does not.
+template <class Open>
+std::string refusal(const Open& open) {
+  try {
+    open();
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// Puts a file where it belongs: it may be of both sensors. @throws Error when it is of none.
+void place(const std::filesystem::path& file, sim::LogsToInspect& logs) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw Error(file.string() + ": is no file; info looks at logs as often as it needs");
+  }
+  const std::string not_imu = refusal([&] { ImuLogReader(file, logs.imu_options); });
+  const std::string not_gnss = refusal([&] { GnssLogReader(file, logs.gnss_options); });
+  const auto set = [&file](std::filesystem::path& path, const char* what) {
+    if (path == file) return;
+    if (!path.empty())
+      throw Error(fmt::format("{}: a second {} log beside {}", file.string(), what, path.string()));
+    path = file;
+  };
+  if (not_imu.empty()) set(logs.imu, "IMU");
+  if (not_gnss.empty()) set(logs.gnss, "GNSS");
+  if (not_imu.empty() || not_gnss.empty()) return;
+  const ScalarColumns odometer{OdometerSpeed::kColumns[0], OdometerSpeed::kColumns[1],
+                               OdometerSpeed::kLargest};
+  if (refusal([&] { ScalarLogReader(file, odometer); }).empty()) {
+    return set(logs.odometer, "odometer");
+  }
+  const bool is_imu = not_imu.find("missing column") == std::string::npos;
+  throw Error(is_imu || not_gnss.find("missing column") != std::string::npos ? not_imu : not_gnss);
+}
+
+/// Of a log that is there: what was read of it.
+void add_log(Table& table, const char* title, const std::filesystem::path& path,
+             const std::string& layout, const LogSummary& summary) {
+  if (path.empty()) return;
+  table.add({title, layout, std::to_string(summary.lines), std::to_string(summary.records),
+             std::to_string(summary.damaged_lines()), path.string()});
+}
+
+void print_notes(const LogSummary& summary) {
+  for (const std::string& text : summary.notes) fmt::print("  {}\n", text);
+  for (const std::string& text : summary.messages) fmt::print("  {}\n", text);
+}
+
+/// The command that comes next, with what mends the findings.
+std::string next_command(const sim::LogsToInspect& logs, const sim::LogLook& look) {
+  std::string command =
+      fmt::format("leeway fuse --imu {} --gnss {}", logs.imu.string(), logs.gnss.string());
+  for (const sim::Finding& finding : look.findings) {
+    const bool is_option = finding.remedy.starts_with("--") &&
+                           finding.remedy.find_first_of("<,") == std::string::npos &&
+                           std::count(finding.remedy.begin(), finding.remedy.end(), ' ') == 1;
+    if (is_option && finding.certainty != sim::Certainty::kNote) command += " " + finding.remedy;
+  }
+  return command;
+}
+
+void print_info(const sim::LogsToInspect& logs, const sim::InspectedLogs& found) {
+  const bool is_wrong = found.look.is_certainly_wrong();
+  fmt::print("{}\n\n", is_wrong ? "These logs are not what they say: see the findings."
+                       : found.look.findings.empty()
+                           ? "Nothing is wrong with these logs that shows."
+                           : "Nothing is certainly wrong with these logs.");
+  print_findings(found.look.findings);
+  Table table({"<log", "<layout", "lines", "records", "damaged", "<file"});
+  add_log(table, "IMU", logs.imu, found.imu_layout, found.imu_summary);
+  add_log(table, "GNSS", logs.gnss, found.gnss_layout, found.gnss_summary);
+  table.print();
+  print_notes(found.imu_summary);
+  print_notes(found.gnss_summary);
+  print_figures(found.look);
+  if (!logs.imu.empty() && !logs.gnss.empty()) {
+    fmt::print("\nNext: {}\n", next_command(logs, found.look));
+  }
+}
+
+Json summary_json(const std::filesystem::path& path, const std::string& layout,
+                  const LogSummary& summary) {
+  if (path.empty()) return nullptr;
+  return {{"path", path.string()},
+          {"layout", layout},
+          {"lines", summary.lines},
+          {"records", summary.records},
+          {"damaged_lines", summary.damaged_lines()},
+          {"notes", summary.notes},
+          {"messages", summary.messages}};
+}
+
+int run(const InfoOptions& options) {
+  sim::LogsToInspect logs;
+  LogForms forms = log_forms(options.form);
+  logs.imu_options.format = std::move(forms.imu);
+  logs.gnss_options.format = std::move(forms.gnss);
+  for (const auto& file : options.files) place(file, logs);
+  const sim::InspectedLogs found = sim::inspect(logs);
+  show(options.output,
+       answer_json("info",
+                   {{"imu", summary_json(logs.imu, found.imu_layout, found.imu_summary)},
+                    {"gnss", summary_json(logs.gnss, found.gnss_layout, found.gnss_summary)},
+                    {"odometer", logs.odometer.empty() ? Json() : Json(logs.odometer.string())}},
+                   look_json(found.look)),
+       [&] { print_info(logs, found); });
+  return kSuccess;
+}
+
+void add_options(CLI::App& app, InfoOptions& options) {
+  app.add_option("files", options.files, "logs of an IMU, a receiver, an odometer, in any order")
+      ->required()
+      ->type_name("FILE");
+  add_log_form_options(app, options.form);
+  add_json_option(app, options.output.json);
+}
+
+const Command<InfoOptions> kInfo{
+    "info", "What is in logs, what is wrong with them, and the option that mends it",
+    "Examples:\n  leeway info imu.csv gnss.csv\n  leeway info imu.csv gnss.csv odometer.csv --json",
+    add_options, run};
+
+}  // namespace
+}  // namespace leeway::cli
