@@ -38,6 +38,7 @@ constexpr std::array kQuantities{
     Quantity{"pos_std_?_m", "ned", Dimension::kLength, "pos_std_? pos_sigma_? position_std_?"},
     Quantity{"v?_mps", "ned", Dimension::kSpeed, "v? v_? vel_? velocity_?"},
     Quantity{"vel_std_?_mps", "ned", Dimension::kSpeed, "vel_std_? vel_sigma_? velocity_std_?"},
+    Quantity{"speed_mps", "", Dimension::kSpeed, "speed wheel_speed vehicle_speed odometer_speed"},
     Quantity{"heading_deg", "", Dimension::kAngle, "heading"},
     Quantity{"heading_sigma_deg", "", Dimension::kAngle, "heading_sigma heading_std"}};
 
@@ -68,6 +69,8 @@ constexpr std::array kUnits{
     Unit{Dimension::kSpeed, 1e-2, "cm/s cmps"},
     Unit{Dimension::kSpeed, 1e-3, "mm/s mmps"},
     Unit{Dimension::kSpeed, 1.0 / 3.6, "km/h kmh kmph kph"},
+    Unit{Dimension::kSpeed, 0.44704, "mph"},
+    Unit{Dimension::kSpeed, 0.3048, "ft/s fps"},
     Unit{Dimension::kSpeed, 1852.0 / 3600.0, "kn kt knots"}};
 
 template <class Visit>
@@ -204,13 +207,22 @@ std::optional<ColumnMeaning> with_suffix(const std::string& name, const std::str
   return std::nullopt;
 }
 
+ColumnMeaning meaning_of_owned(std::string_view title, const std::string& ours,
+                               const LogFormat& format) {
+  if (quantity_of_column(ours)) return ColumnMeaning{.column = ours, .is_alias = true};
+  const Match found = match(ours);
+  if (!found.quantity) throw Error("column '" + ours + "' is none that Leeway reads");
+  if (lower(title) == found.column) return ColumnMeaning{.column = found.column, .is_alias = true};
+  return with_unit(found, stem_and_unit(lower(title)).second, std::string(title), format);
+}
+
 std::optional<ColumnMeaning> meaning_by_owner(std::string_view title, const LogFormat& format) {
   for (const auto& [ours, theirs] : format.columns) {
-    if (theirs != title) continue;
-    if (quantity_of_column(ours)) return ColumnMeaning{.column = ours, .is_alias = true};
-    const Match found = match(ours);
-    if (!found.quantity) throw Error("column '" + ours + "' is none that Leeway reads");
-    return with_unit(found, stem_and_unit(lower(title)).second, std::string(title), format);
+    if (theirs == title) return meaning_of_owned(title, ours, format);
+    if (!theirs.starts_with('-') || theirs.substr(1) != title) continue;
+    ColumnMeaning meaning = meaning_of_owned(title, ours, format);
+    meaning.scale = -meaning.scale;
+    return meaning;
   }
   return std::nullopt;
 }

@@ -85,7 +85,7 @@ CsvHeader CsvHeader::understood(std::string_view line, std::string path, const L
     if (!is_alias[k]) continue;
     const auto chosen = [&] {
       for (const auto& [ours, theirs] : format.columns) {
-        if (theirs == header.titles_[k]) return true;
+        if (theirs == header.titles_[k] || theirs == "-" + header.titles_[k]) return true;
       }
       return false;
     }();

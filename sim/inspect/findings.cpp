@@ -45,14 +45,16 @@ std::string known_difference(double ahead_s, double slack_s) {
 }
 
 Finding clock_finding(const SharedFigures& shared) {
-  const double offset_s = shared.clock_offset_s;
-  const double size_s = std::abs(offset_s);
-  const bool is_certain = size_s > 0.5 && size_s > 2.0 * kSigmas * shared.clock_offset_sigma_s;
-  const bool is_leap = std::abs(size_s - kLeapS) < 0.5;
+  const double sigma_s = shared.clock_offset_sigma_s;
+  const double size_s = std::abs(shared.clock_offset_s);
+  const bool is_certain = size_s > 0.5 && size_s > 2.0 * kSigmas * sigma_s;
+  const bool is_leap = std::abs(size_s - kLeapS) < kSigmas * sigma_s;
+  const double offset_s =
+      is_leap ? std::copysign(kLeapS, shared.clock_offset_s) : shared.clock_offset_s;
   return {is_certain ? Certainty::kCertain : Certainty::kLikely, "gnss", "clock-offset",
           fmt::format("the receiver's turns are those of the IMU {:+.2f} s later (sigma {:.2f} s): "
                       "the clocks differ{}",
-                      offset_s, shared.clock_offset_sigma_s,
+                      shared.clock_offset_s, sigma_s,
                       is_leap ? ", by the leap seconds between GPS time and UTC" : ""),
           fmt::format("--gnss-time-offset-s {:.2f}", offset_s)};
 }
@@ -176,7 +178,7 @@ std::vector<Finding> odometer_findings(double ratio) {
   return {{unit ? Certainty::kCertain : Certainty::kLikely, "odometer", "odometer-unit",
            fmt::format("speeds are {:.3g} times the receiver's{}", ratio,
                        unit ? fmt::format(": {}?", unit->unit) : std::string()),
-           "write the speed in m/s"}};
+           "name the column with its unit, as speed_kmh"}};
 }
 
 }  // namespace leeway::sim

@@ -11,10 +11,11 @@
 namespace leeway::sim {
 namespace {
 
-/// Scale errors of the worst parts and a vehicle's own accelerations stay below.
-constexpr double kGravityTolerance = 0.05;
-constexpr double kOddGravity = 0.15;
+/// Biases and scale errors of car-grade parts, and a vehicle's own accelerations, stay below.
+constexpr double kGravityTolerance = 0.15;
 constexpr double kGravityGone = 0.2;
+/// Gravity keeps its direction in a vehicle. What is left without it does not.
+constexpr double kSteady = 0.7;
 constexpr double kAxisRad = 25.0 * kRadPerDeg;
 
 Finding force_finding(Certainty certainty, double f_mps2, std::string_view meaning,
@@ -35,38 +36,36 @@ std::vector<Finding> gravity_findings(const ImuFigures& imu) {
   const double f_mps2 = imu.specific_force_mps2;
   const double ratio = f_mps2 / kStandardGravityMps2;
   if (std::isnan(ratio) || std::abs(ratio - 1.0) < kGravityTolerance) return {};
-  const double step_s = imu.time.step_s;
+  const auto finding = [f_mps2](Certainty certainty, std::string_view meaning, std::string remedy) {
+    return std::vector{force_finding(certainty, f_mps2, meaning, std::move(remedy))};
+  };
   const auto near = [ratio](double value) {
     return std::abs(ratio / value - 1.0) < kGravityTolerance;
   };
-  const auto unit = force_unit(ratio);
-  if (unit) {
-    return {force_finding(Certainty::kCertain, f_mps2, fmt::format("it is in {}", unit->unit),
-                          fmt::format("--accel-unit {}", unit->unit))};
-  }
-  if (near(step_s)) {
-    return {force_finding(
-        Certainty::kCertain, f_mps2,
-        fmt::format("increments over {:.3g} s stand under a heading of rates", step_s),
-        "name the columns dt_s, dtheta_x_rad .., dv_x_mps ..")};
-  }
-  if (near(1.0 / step_s)) {
-    return {force_finding(Certainty::kCertain, f_mps2, "rates stand under a heading of increments",
-                          "name the columns gx_radps .., ax_mps2 ..")};
-  }
   if (!has_gravity(imu)) {
-    return {force_finding(Certainty::kCertain, f_mps2,
-                          "gravity has been taken out, and without it nothing tells which way is "
-                          "down",
-                          "record the total acceleration, with gravity")};
+    return finding(Certainty::kCertain,
+                   "gravity has been taken out, and without it nothing tells which way is down",
+                   "record the total acceleration, with gravity");
+  }
+  if (const auto unit = force_unit(ratio)) {
+    return finding(Certainty::kCertain, fmt::format("it is in {}", unit->unit),
+                   fmt::format("--accel-unit {}", unit->unit));
+  }
+  if (near(imu.time.step_s)) {
+    return finding(
+        Certainty::kCertain,
+        fmt::format("increments over {:.3g} s stand under a heading of rates", imu.time.step_s),
+        "name the columns dt_s, dtheta_x_rad .., dv_x_mps ..");
+  }
+  if (near(1.0 / imu.time.step_s)) {
+    return finding(Certainty::kCertain, "rates stand under a heading of increments",
+                   "name the columns gx_radps .., ax_mps2 ..");
   }
   if (near(0.5)) {
-    return {force_finding(Certainty::kCertain, f_mps2, "half: the rate of the increments is wrong",
-                          "check the times of the log, and --time-unit")};
+    return finding(Certainty::kCertain, "half: the rate of the increments is wrong",
+                   "check the times of the log, and --time-unit");
   }
-  const bool is_odd = std::abs(ratio - 1.0) > kOddGravity;
-  return {force_finding(is_odd ? Certainty::kLikely : Certainty::kNote, f_mps2,
-                        "a unit or a scale that is unknown", is_odd ? "--accel-unit" : "")};
+  return finding(Certainty::kLikely, "a unit or a scale that is unknown", "--accel-unit");
 }
 
 /// Where the axes of the log point in the vehicle, as columns: forward, right, down.
@@ -89,9 +88,7 @@ char letter_of(const Eigen::Vector3d& axis_in_vehicle) {
 }  // namespace
 
 bool has_gravity(const ImuFigures& imu) {
-  const double ratio = imu.specific_force_mps2 / kStandardGravityMps2;
-  const bool is_step = std::abs(ratio / imu.time.step_s - 1.0) < kGravityTolerance;
-  return ratio > kGravityGone || is_step || force_unit(ratio);
+  return imu.specific_force_mps2 > kGravityGone * kStandardGravityMps2 || imu.steadiness > kSteady;
 }
 
 std::vector<Finding> axes_findings(const ImuFigures& imu) {

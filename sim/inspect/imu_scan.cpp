@@ -67,6 +67,7 @@ void ImuScan::add(const ImuIncrement& inc) {
   const Eigen::Vector3d f_b_mps2 = window_dv_mps_ / window_s_;
   force_mps2_.add(f_b_mps2.norm());
   force_sum_mps2_ += f_b_mps2;
+  magnitude_sum_mps2_ += f_b_mps2.norm();
   window_s_ = 0.0;
   window_dv_mps_.setZero();
 }
@@ -75,7 +76,10 @@ ImuFigures ImuScan::figures() const {
   ImuFigures f;
   f.time = times_.figures();
   f.specific_force_mps2 = force_mps2_.median();
-  if (force_sum_mps2_.norm() > 0.0) f.up_b = force_sum_mps2_.normalized();
+  if (magnitude_sum_mps2_ > 0.0) {
+    f.up_b = force_sum_mps2_.normalized();
+    f.steadiness = force_sum_mps2_.norm() / magnitude_sum_mps2_;
+  }
   for (std::size_t channel = 0; channel < 6 && count_ > kFewSamples; ++channel) {
     const auto axis = static_cast<Eigen::Index>(channel % 3);
     const double low = least_[channel / 3][axis];

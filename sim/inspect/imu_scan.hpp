@@ -57,6 +57,7 @@ class ImuScan {
   Eigen::Vector3d window_dv_mps_{Eigen::Vector3d::Zero()};
   ThinnedMedian force_mps2_{};
   Eigen::Vector3d force_sum_mps2_{Eigen::Vector3d::Zero()};
+  double magnitude_sum_mps2_{0.0};
   std::array<Eigen::Vector3d, 2> least_{};
   std::array<Eigen::Vector3d, 2> most_{};
   FullScale gyro_scale_;

@@ -21,8 +21,23 @@ constexpr double kMostCourseSigmaRad = 0.2;
 constexpr double kMostTurnRad = 2.0;  ///< of a pair: more is a reversal
 constexpr double kBreakS = 1.0;       ///< without increments: what was before is forgotten
 constexpr std::int64_t kFewPairs = 15;
-constexpr double kRateS = 0.4;      ///< over which a turn rate is taken
+constexpr double kRateS = 0.4;  ///< over which a turn rate is taken
+constexpr double kOffsetStepS = 0.1;
+constexpr double kBelievedSigmas = 4.0;  ///< of an offset that is still believed
+/// Antennas sit at most so far ahead of the rear axle, more or less; a lorry's too.
+constexpr double kLeadSigmaM = 3.0;
 constexpr double kSingular = 1e-6;  ///< speeds and turns that tell too little apart
+
+/// How far from the best offset others fit almost as well: minima beside it count.
+template <class Residuals>
+double reach_s(const Residuals& residuals, std::size_t best, double more) {
+  std::size_t steps = 0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    if (residuals[k] - residuals[best] < more)
+      steps = std::max(steps, k > best ? k - best : best - k);
+  }
+  return kOffsetStepS * static_cast<double>(steps);
+}
 
 }  // namespace
 
@@ -36,10 +51,12 @@ void SharedTurns::add(const ImuIncrement& inc) {
   levelled_s_ = std::min(levelled_s_ + inc.dt_s, kLevelS);
   down_b_ -= (inc.dv_b_mps + inc.dt_s * down_b_) / levelled_s_;
   const double turn_rad = inc.dtheta_b_rad.dot(down_b_) / std::max(down_b_.norm(), 1e-9);
-  const double end_s = to_seconds(inc.time);
-  for (auto step = static_cast<std::int64_t>(std::floor(to_seconds(begin) / kStepS)) + 1;
-       static_cast<double>(step) * kStepS <= end_s; ++step) {
-    const double share = 1.0 - (end_s - static_cast<double>(step) * kStepS) / inc.dt_s;
+  // In whole nanoseconds, that no step is lost or taken twice.
+  std::int64_t step = begin.time_since_epoch() / kStep;
+  if (step * kStep <= begin.time_since_epoch()) ++step;
+  for (; step * kStep <= inc.time.time_since_epoch(); ++step) {
+    const double to_end_s = to_seconds(inc.time.time_since_epoch() - step * kStep);
+    const double share = 1.0 - to_end_s / inc.dt_s;
     if (history_.empty()) first_step_ = step;
     history_.push_back({now_.turn_rad + share * turn_rad, now_.dv_b_mps + share * inc.dv_b_mps});
   }
@@ -106,7 +123,7 @@ void SharedTurns::judge_pairs() {
 }
 
 std::optional<SharedTurns::Past> SharedTurns::at(Time t) const {
-  const double place = to_seconds(t) / kStepS - static_cast<double>(first_step_);
+  const double place = to_seconds(t.time_since_epoch() - first_step_ * kStep) / kStepS;
   if (!(place >= 0.0) || place + 1.0 >= static_cast<double>(history_.size())) return std::nullopt;
   const auto k = static_cast<std::size_t>(place);
   const double share = place - static_cast<double>(k);
@@ -174,7 +191,7 @@ SharedTurns::Line SharedTurns::line(std::size_t k) const {
   const Sums& s = sums_[k];
   Eigen::Matrix2d A;
   A << s.xx - s.x * s.x / weights_, s.xz - s.x * s.z / weights_,  //
-      s.xz - s.x * s.z / weights_, s.zz - s.z * s.z / weights_;
+      s.xz - s.x * s.z / weights_, s.zz - s.z * s.z / weights_ + 1.0 / (kLeadSigmaM * kLeadSigmaM);
   const Eigen::Vector2d c(s.xy - s.x * y_ / weights_, s.zy - s.z * y_ / weights_);
   const double yy = yy_ - y_ * y_ / weights_;
   if (!(A.determinant() > kSingular * A(0, 0) * A(1, 1))) return {0.0, 0.0, yy, 0.0};
@@ -204,7 +221,9 @@ TurnMatch SharedTurns::match() const {
   const double after = residuals_rad2[best + 1];
   const double bend = before - 2.0 * residuals_rad2[best] + after;
   m.offset_s = kStepS * (static_cast<double>(best) - kMostSteps + 0.5 * (before - after) / bend);
-  m.offset_sigma_s = kStepS * std::sqrt(2.0 * each / bend);
+  m.offset_sigma_s = std::max(
+      kStepS * std::sqrt(2.0 * each / bend),
+      reach_s(residuals_rad2, best, each * kBelievedSigmas * kBelievedSigmas) / kBelievedSigmas);
   return m;
 }
 

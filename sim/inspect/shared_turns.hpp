@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -38,7 +39,9 @@ class SharedTurns {
   std::optional<Eigen::Vector3d> forward_b() const;
 
  private:
-  static constexpr double kStepS = 0.1;   ///< of the history and of the offsets that are tried
+  /// Of the history and of the offsets that are tried.
+  static constexpr Duration kStep = std::chrono::milliseconds{100};
+  static constexpr double kStepS = to_seconds(kStep);
   static constexpr int kMostSteps = 200;  ///< 20 s: leap seconds are below
   static constexpr std::size_t kOffsets = 2 * kMostSteps + 1;
 

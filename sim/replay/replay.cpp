@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "leeway/logs/solution_writer.hpp"
+#include "leeway/sim/inspect/log_inspector.hpp"
 #include "lib/earth/field_walk.hpp"
 #include "sim/replay/outage_branch.hpp"
 #include "sim/replay/reference.hpp"
@@ -37,6 +38,46 @@ class Readings {
   std::optional<ScalarRecord> next_{};
 };
 
+/// The look at logs on the way, and when it is certain that they are wrong.
+class Looks {
+ public:
+  explicit Looks(const ReplayInput& input)
+      : is_as_is_(input.is_as_is), taken_care_of_(input.taken_care_of) {}
+
+  void add(const GnssFix& fix) { inspector_.add(fix); }
+
+  void add(const Reading& reading) {
+    if (const auto* speed = std::get_if<OdometerSpeed>(&reading)) inspector_.add(*speed);
+  }
+
+  /// Whether to stop, judged a minute after the begin and whenever the log has twice the length.
+  bool add(const ImuIncrement& inc) {
+    inspector_.add(inc);
+    seconds_ += inc.dt_s;
+    if (seconds_ < next_s_) return false;
+    next_s_ = 2.0 * seconds_;
+    return refuses(look());
+  }
+
+  bool refuses(const LogLook& look) const { return !is_as_is_ && look.is_certainly_wrong(); }
+
+  LogLook look() const {
+    LogLook look = inspector_.look();
+    std::erase_if(look.findings, [this](const Finding& f) {
+      return std::find(taken_care_of_.begin(), taken_care_of_.end(), f.about) !=
+             taken_care_of_.end();
+    });
+    return look;
+  }
+
+ private:
+  bool is_as_is_;
+  std::vector<std::string> taken_care_of_;
+  LogInspector inspector_{};
+  double seconds_{0.0};
+  double next_s_{60.0};
+};
+
 /// The pass over the logs.
 class Replay {
  public:
@@ -46,7 +87,8 @@ class Replay {
         gnss_(input.gnss, input.gnss_options),
         navigator_(config),
         start_heading_(input.start_heading),
-        output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)) {
+        output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)),
+        looks_(input) {
     if (!input.truth.empty()) reference_.emplace(input);
     if (!input.solution.empty()) writer_.emplace(input.solution);
     if (input.start) navigator_.start(input.start->estimate, input.start->P);
@@ -65,6 +107,7 @@ class Replay {
     while (const auto inc = imu_.next()) {
       if (!imu_started_) push_start_heading(*inc);
       push_fixes(inc->time);
+      if (looks_.add(*inc)) break;
       push(*inc);
       if (observer_.verdict) tell_verdicts(inc->time);
       if (observer_.progress && --until_progress == 0) {
@@ -92,6 +135,7 @@ class Replay {
         if (branch.withholds(next_fix_->time)) branch.withhold(*next_fix_);
       }
       navigator_.push(*next_fix_);
+      looks_.add(*next_fix_);
       if (imu_started_) ++result_.fixes_in_span;
     }
     imu_started_ = true;
@@ -101,6 +145,7 @@ class Replay {
         if (branch.is_running()) branch.push(reading);
       }
       navigator_.push(reading);
+      looks_.add(reading);
     };
     for (Readings& readings : aidings_) readings.take_until(t, push_to_all);
   }
@@ -165,7 +210,11 @@ class Replay {
   }
 
   ReplayResult result() {
-    if (writer_) writer_->close();
+    if (next_fix_ && result_.fixes_in_span == 0) looks_.add(*next_fix_);
+    result_.look = looks_.look();
+    result_.is_refused = looks_.refuses(result_.look);
+    if (result_.is_refused) result_.has_solution = false;
+    if (writer_ && !result_.is_refused) writer_->close();
     for (const OutageBranch& branch : branches_) result_.outages.push_back(branch.result());
     result_.rms = rms_.rms();
     for (std::size_t v = 0; v < kVerdicts; ++v) {
@@ -202,6 +251,7 @@ class Replay {
   Navigator navigator_;
   std::optional<MeasuredHeading> start_heading_;
   Duration output_interval_;
+  Looks looks_;
   std::optional<Reference> reference_{};
   std::optional<SolutionWriter> writer_{};
   std::vector<OutageBranch> branches_{};

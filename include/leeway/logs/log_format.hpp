@@ -14,7 +14,8 @@ struct LogFormat {
   std::string time_unit{};   ///< "s", "ms", "us", "ns"
   std::string gyro_unit{};   ///< of rates in CSV: "rad/s", "deg/s", "mdps"
   std::string accel_unit{};  ///< of specific force in CSV: "m/s^2", "g", "mg"
-  /// Names in a CSV by Leeway's: {"gx_radps", "wx"}. The unit may be left out: {"gx", "wx"}.
+  /// Names in a CSV by Leeway's: {"gx_radps", "wx"}. The unit may be left out: {"gx", "wx"}. A "-"
+  /// before the name turns the sign: {"vd", "-v_up"}.
   std::map<std::string, std::string> columns{};
 
   /// Where x, y, z of the IMU's axes point, a letter each of forward, back, right, left, up, down:

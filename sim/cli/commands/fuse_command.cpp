@@ -21,7 +21,7 @@ std::pair<Time, Time> span_of(const std::filesystem::path& log, const GnssLogOpt
 /// Whether all that was asked for has an answer.
 bool is_answered(const FuseJob& job) {
   const sim::ReplayResult& r = job.result;
-  if (!r.has_solution) return false;
+  if (!r.has_solution || r.is_refused) return false;
   if (!job.input.truth.empty() && r.rms.epochs == 0) return false;
   return r.outages.empty() || std::any_of(r.outages.begin(), r.outages.end(), [](const auto& o) {
            return o.against != sim::Against::kNothing;
@@ -172,6 +172,8 @@ void add_solution_options(CLI::App& app, FuseOptions& options) {
   add_default_option(app, "--out-rate-hz", files.solution_rate_hz,
                      "solution epochs per second, in the file and in the RMS errors")
       ->check(CLI::Range(1e-3, 1e4));
+  app.add_flag("--as-is", files.is_as_is,
+               "go on even if the logs are certainly not what they say (see leeway info)");
   app.add_flag("--verbose", options.verbose, "list every outage, also when they are more than 20");
   add_output_options(app, options.output);
 }

@@ -104,6 +104,15 @@ bool is_without(const FuseVehicle& vehicle, const VehiclePart& part) {
                      [&](const auto& name) { return is_same_name(name, part.name); });
 }
 
+/// What a look at the logs may find, and the options tell already.
+std::vector<std::string> taken_care_of(const FuseOptions& options, const FuseJob& job) {
+  std::vector<std::string> about;
+  if (job.estimates_mount) about.emplace_back("axes");
+  if (options.timing.velocity_lag_s != 0.0) about.emplace_back("velocity-lag");
+  if (options.timing.estimate_clock) about.emplace_back("clock-offset");
+  return about;
+}
+
 /// An option that only a car has a use for, given without one; empty: there is none.
 std::string asked_of_a_car(const FuseOptions& options) {
   const VehicleConfig has = VehicleConfig::of(options.vehicle.kind);
@@ -163,6 +172,7 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
           "--start-heading-deg is of the vehicle, and the mount is not known at the start: "
           "give --mount");
     }
+    job.input.taken_care_of = taken_care_of(options, job);
     inspect(job);
   }
   return jobs;

@@ -41,11 +41,10 @@ int run(const IntervalCommand& command) {
 void add_options(CLI::App& app, IntervalCommand& command) {
   IntervalChoice& choice = command.choice;
   add_scene_options(app, choice.scene);
-  auto* confirm =
-      app.add_option("--confirm", choice.confirm_trials,
-                     "run so many trials of the scene's estimator at every answer")
-          ->check(CLI::Range(0, 1000000))
-          ->type_name("N");
+  auto* confirm = app.add_option("--confirm", choice.confirm_trials,
+                                 "run so many trials of the scene's estimator at every answer")
+                      ->check(CLI::Range(0, 1000000))
+                      ->type_name("N");
   app.add_option("--confirm-limit", choice.confirm_limits,
                  "confirm the answers for these limits only; several with commas")
       ->delimiter(',')

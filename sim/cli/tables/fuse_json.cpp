@@ -1,4 +1,5 @@
 #include "sim/cli/tables/fuse_tables.hpp"
+#include "sim/cli/tables/look_tables.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -101,6 +102,8 @@ Json drives_json(const std::vector<FuseJob>& jobs) {
     const FuseTotals totals = totals_of({job});
     Json drive{{"drive", job.drive},
                {"mount_rpy_deg", json_of(job.mount_rpy_deg)},
+               {"findings", findings_json(job.result.look.findings)},
+               {"refused", job.result.is_refused},
                {"solution", solution_json(job)},
                {"verdicts", verdicts_json(job.result.verdicts)},
                {"nis_mean", totals.nis_mean},
@@ -162,6 +165,8 @@ Json fuse_json(const FuseOptions& options, const std::string& imu_name,
   const auto has_truth = [](const FuseJob& job) { return !job.input.truth.empty(); };
   if (std::ranges::any_of(jobs, has_truth)) results["rms"] = rms_json(totals.rms);
   if (options.logs.drives.empty()) {
+    results["findings"] = findings_json(jobs.front().result.look.findings);
+    results["refused"] = jobs.front().result.is_refused;
     results["solution"] = solution_json(jobs.front());
     results["logs"] = logs_json(jobs.front());
   } else {

@@ -50,6 +50,7 @@ void print_inputs(const FuseJob& job) {
 }
 
 const char* why_no_solution(const sim::ReplayResult& r) {
+  if (r.is_refused) return "the logs are certainly wrong: see the warnings, or --as-is";
   return r.fixes_in_span == 0
              ? "no fix falls into the time of the IMU data, so never aligned; t_s of both logs "
                "must "
@@ -65,6 +66,7 @@ void print_run(const FuseJob& job) {
   } else {
     fmt::print("\nNo solution: {}\n", why_no_solution(r));
   }
+  if (r.is_refused) return;
   Table verdicts({"<verdict", "inputs"});
   for (const Verdict verdict : kAll<Verdict>) {
     if (count(r, verdict) == 0) continue;
@@ -145,6 +147,14 @@ void warn_of_clock(const Health& health, const std::string& where) {
       "{}fixes are {:.0f} +- {:.0f} ms {} than their times say, by the clock of the IMU: "
       "--estimate-clock takes that out (a wrong --lever looks alike: 1 m at 10 m/s is 100 ms)",
       where, ms, sigma_ms, direction);
+}
+
+void warn_of(const std::vector<sim::Finding>& findings, const std::string& where) {
+  for (const sim::Finding& f : findings) {
+    if (f.certainty == sim::Certainty::kNote) continue;
+    spdlog::warn("{}{}: {}{}{}", where, f.log, f.text,
+                 f.remedy.empty() ? "" : "; mend it: ", f.remedy);
+  }
 }
 
 void warn_of(const FuseLog& log) {
@@ -245,7 +255,8 @@ void print_tables(const FuseOptions& options, const std::string& imu_name,
   }
   fmt::print("\nIMU model: {}", imu_name);
   const std::filesystem::path& solution = options.logs.files.solution;
-  if (!solution.empty()) fmt::print("; solution: {}", solution.string());
+  if (!solution.empty() && !jobs.front().result.is_refused)
+    fmt::print("; solution: {}", solution.string());
   fmt::print("\n");
 }
 
@@ -253,6 +264,11 @@ void warn(const FuseJob& job) {
   const sim::ReplayResult& r = job.result;
   const std::string where = job.drive.empty() ? "" : job.drive + ": ";
   for (const FuseLog& log : logs_of(job)) warn_of(log);
+  warn_of(r.look.findings, where);
+  if (r.is_refused) {
+    spdlog::error("{}nothing is made of logs that are certainly wrong; --as-is does", where);
+    return;
+  }
   if (const auto n = count(r, Verdict::kGap); n > 0) {
     spdlog::warn("{}{} gaps in the IMU data were bridged at constant velocity", where, n);
   }

@@ -46,6 +46,8 @@ struct ImuFigures {
   TimeFigures time{};
   double specific_force_mps2{kUnknown};  ///< median of the magnitudes of means over a second
   Eigen::Vector3d up_b{Eigen::Vector3d::Constant(kUnknown)};  ///< unit vector, the mean one
+  /// Magnitude of the mean specific force over the mean magnitude: 1 where its direction stays.
+  double steadiness{kUnknown};
   /// Unit vector: where the log gains speed. NaN without speed changes to see it by.
   Eigen::Vector3d forward_b{Eigen::Vector3d::Constant(kUnknown)};
   /// Channels x, y, z of the gyros, then of the accelerometers, that never change.

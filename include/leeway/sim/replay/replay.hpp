@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "leeway/logs/gnss_log.hpp"
@@ -16,6 +17,7 @@
 #include "leeway/logs/truth_log.hpp"
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/navigator.hpp"
+#include "leeway/sim/inspect/log_look.hpp"
 #include "leeway/sim/scene/outage.hpp"
 
 namespace leeway::sim {
@@ -41,6 +43,10 @@ struct ReplayInput {
   std::optional<MeasuredHeading> start_heading{};
   /// Where to start; without it the navigator aligns.
   std::optional<Alignment> start{};
+  /// Goes on, whatever is found in the logs.
+  bool is_as_is{false};
+  /// Finding::about of what the configuration takes care of already.
+  std::vector<std::string> taken_care_of{};
 };
 
 /// Root mean squares over the solution's epochs with truth.
@@ -68,6 +74,8 @@ struct ReplayResult {
   std::optional<Eigen::Vector3d>
       mount_rpy_deg{};      ///< found: Rz(Y) Ry(P) Rx(R), to forward, right, down
   double final_roll_deg{};  ///< attitude at the end: beyond 90 deg the mount is upside down
+  LogLook look{};           ///< at what was read, in the axes and times that were told
+  bool is_refused{false};   ///< the logs are certainly wrong: it stopped, and wrote no solution
   LogSummary imu_summary{};
   LogSummary gnss_summary{};
   LogSummary truth_summary{};
@@ -95,7 +103,8 @@ struct ReplayObserver {
 /// Columns of the log of a sensor.
 ScalarColumns columns_of(const Aiding& aiding);
 
-/// The replay of the logs, in one pass and constant memory. Every outage branches from the fully
+/// The replay of the logs, in one pass and constant memory. The logs are looked at on the way: as
+/// soon as a finding is certain, it stops. Every outage branches from the fully
 /// aided state, so outages may overlap.
 /// @throws Error when a file cannot be read or the configuration is invalid.
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
