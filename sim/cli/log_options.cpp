@@ -1,10 +1,14 @@
 #include "sim/cli/log_options.hpp"
 
+#include <cmath>
+#include <cstdlib>
+
 #include "sim/tools/toml_reader.hpp"
 
 namespace leeway::cli {
 namespace {
 
+constexpr sim::Quantity kTimeOffset{"time_offset_s", {}, {-1e10, 1e10}};
 constexpr sim::Quantity kGnssSigma{"gnss_sigma", {}, {1e-6, 1e5}};
 
 void set_text(sim::TomlSection& section, std::string_view key, std::string& value) {
@@ -31,7 +35,11 @@ LogForms read_file(const std::filesystem::path& path) {
   LogForms forms;
   sim::TomlDocument::from_file(path).read([&](sim::TomlSection& root) {
     root.table("imu", [&](sim::TomlSection& section) { read_format(section, forms.imu); });
-    root.table("gnss", [&](sim::TomlSection& section) { read_format(section, forms.gnss); });
+    root.table("gnss", [&](sim::TomlSection& section) {
+      read_format(section, forms.gnss);
+      if (const auto offset = section.value(kTimeOffset))
+        forms.gnss_time_offset_s = offset->number();
+    });
   });
   return forms;
 }
@@ -46,6 +54,16 @@ void add_column(LogFormat& format, const std::string& option) {
                 fmt::format("{}", fmt::join(known, ", ")));
   }
   format.columns[ours] = option.substr(at + 1);
+}
+
+void set_time_offset(LogForms& forms, const std::string& option) {
+  forms.is_time_offset_to_find = option == "auto";
+  if (option.empty() || forms.is_time_offset_to_find) return;
+  char* end = nullptr;
+  forms.gnss_time_offset_s = std::strtod(option.c_str(), &end);
+  if (*end != '\0' || !(std::abs(forms.gnss_time_offset_s) <= 1e10)) {
+    throw Error("--gnss-time-offset-s '" + option + "': wanted seconds, or auto");
+  }
 }
 
 void replace(std::string& value, const std::string& given) {
@@ -81,6 +99,8 @@ void add_log_form_options(CLI::App& app, LogForm& form) {
       ->expected(2, 4)
       ->check(CLI::Range(1e-6, 1e5))
       ->type_name("H,V[,VH,VV]");
+  word("--gnss-time-offset-s", form.gnss_time_offset, "S|auto",
+       "added to the times of the GNSS log, s; auto: found from the turns of both logs");
 }
 
 LogForms log_forms(const LogForm& form) {
@@ -99,6 +119,7 @@ LogForms log_forms(const LogForm& form) {
     add_column(forms.gnss, column);
   }
   if (form.gnss_sigma.size() == 3) throw Error("--gnss-sigma: give two numbers or four");
+  set_time_offset(forms, form.gnss_time_offset);
   if (!form.gnss_sigma.empty()) forms.gnss.gnss_sigma = form.gnss_sigma;
   return forms;
 }

@@ -18,11 +18,14 @@ struct LogForm {
   std::string axes{};
   std::vector<std::string> columns{};  ///< "gx=wx"
   std::vector<double> gnss_sigma{};
+  std::string gnss_time_offset{};  ///< seconds, or "auto"
 };
 
 struct LogForms {
   LogFormat imu{};
   LogFormat gnss{};
+  double gnss_time_offset_s{0.0};      ///< added to the receiver's times
+  bool is_time_offset_to_find{false};  ///< from turns and speed changes
 };
 
 void add_log_form_options(CLI::App& app, LogForm& form);

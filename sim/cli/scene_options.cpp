@@ -123,18 +123,18 @@ sim::Scene scene_of(const SceneChoice& choice) {
 
 Json scene_json(const sim::Scene& scene) {
   Json json{{"scene", scene.name},
-          {"motion", scene.trajectory.name},
-          {"duration_s", scene.duration_s},
-          {"imu_rate_hz", scene.imu_rate_hz},
-          {"estimator", name(scene.estimator)},
-          {"vehicle", scene.vehicle ? Json(name(scene.vehicle->config.kind)) : Json()},
-          {"imu_model", scene.imu_name},
-          {"bias_model", name(sim::bias_model_of(scene.imu))},
-          {"gnss", gnss_json(scene.gnss)},
-          {"gate_probability", scene.filter.gate_probability},
-          {"last_s", scene.limit.last_s},
-          {"trials", scene.trials},
-          {"first_seed", scene.first_seed}};
+            {"motion", scene.trajectory.name},
+            {"duration_s", scene.duration_s},
+            {"imu_rate_hz", scene.imu_rate_hz},
+            {"estimator", name(scene.estimator)},
+            {"vehicle", scene.vehicle ? Json(name(scene.vehicle->config.kind)) : Json()},
+            {"imu_model", scene.imu_name},
+            {"bias_model", name(sim::bias_model_of(scene.imu))},
+            {"gnss", gnss_json(scene.gnss)},
+            {"gate_probability", scene.filter.gate_probability},
+            {"last_s", scene.limit.last_s},
+            {"trials", scene.trials},
+            {"first_seed", scene.first_seed}};
   json.update(limit_json(scene.limit));
   return json;
 }

@@ -11,11 +11,11 @@ namespace leeway::cli {
 
 struct SceneChoice {
   std::filesystem::path file{};
-  std::vector<std::string> imus{};           ///< empty: the scene's
-  std::optional<RangeEnd> range{};           ///< of those that are Table 1 classes; absent: mid
-  std::optional<sim::BiasModel> bias{};      ///< absent: as the scene or the model has it
+  std::vector<std::string> imus{};       ///< empty: the scene's
+  std::optional<RangeEnd> range{};       ///< of those that are Table 1 classes; absent: mid
+  std::optional<sim::BiasModel> bias{};  ///< absent: as the scene or the model has it
   LimitChoice limit{};
-  std::filesystem::path filter{};            ///< how the filter runs; empty: as the scene has it
+  std::filesystem::path filter{};  ///< how the filter runs; empty: as the scene has it
   std::optional<double> at_s{};
   std::optional<double> interval_s{};
   std::optional<int> trials{};

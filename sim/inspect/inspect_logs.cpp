@@ -1,13 +1,17 @@
 #include "leeway/sim/inspect/inspect_logs.hpp"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "leeway/logs/scalar_log.hpp"
 #include "leeway/sim/inspect/log_inspector.hpp"
+#include "sim/inspect/findings.hpp"
 
 namespace leeway::sim {
 namespace {
+
+constexpr double kMatched = 0.8;  ///< correlation of turns that are the same
 
 /// The records of one log, to be taken up to a time.
 template <class Reader, class Record>
@@ -43,6 +47,20 @@ ScalarColumns odometer_columns() {
 }
 
 }  // namespace
+
+std::optional<ClockOffset> find_clock_offset(LogsToInspect logs) {
+  LogLook look = inspect(logs).look;
+  const Duration told = logs.gnss_options.time_offset;
+  if (!time_line_findings(look.imu.time, look.gnss.time).empty()) {
+    logs.gnss_options.time_offset +=
+        duration_from_seconds(look.imu.time.first_s - look.gnss.time.first_s);
+    look = inspect(logs).look;
+  }
+  const double offset_s = look.shared.clock_offset_s;
+  if (!std::isfinite(offset_s) || !(look.shared.turn_correlation > kMatched)) return std::nullopt;
+  return ClockOffset{to_seconds(logs.gnss_options.time_offset - told) + offset_s,
+                     look.shared.clock_offset_sigma_s};
+}
 
 InspectedLogs inspect(const LogsToInspect& logs, const std::function<void(Time)>& progress) {
   constexpr int kProgressEvery = 4096;

@@ -83,6 +83,7 @@ LogLook LogInspector::look() const {
   look.imu.forward_b = parts_->turns.forward_b().value_or(Eigen::Vector3d::Constant(kUnknown));
   look.gnss = parts_->gnss.figures();
   const TurnMatch turns = parts_->turns.match();
+  look.shared.turn_correlation = turns.correlation;
   look.shared.turn_ratio = turns.ratio;
   look.shared.turn_ratio_sigma = turns.ratio_sigma;
   look.shared.antenna_lead_m = turns.lead_m;

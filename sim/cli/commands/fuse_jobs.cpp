@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "leeway/earth/rotation.hpp"
+#include "leeway/sim/inspect/inspect_logs.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -46,6 +47,8 @@ FuseJob job_with_options(const FuseLogs& logs) {
   LogForms forms = log_forms(logs.form);
   job.input.imu_options.format = std::move(forms.imu);
   job.input.gnss_options.format = std::move(forms.gnss);
+  job.input.gnss_options.time_offset = duration_from_seconds(forms.gnss_time_offset_s);
+  job.is_time_offset_to_find = forms.is_time_offset_to_find;
   if (logs.gnss_sigma_scale) {
     job.input.gnss_options.position_sigma_scale = logs.gnss_sigma_scale->x();
     job.input.gnss_options.velocity_sigma_scale = logs.gnss_sigma_scale->y();
@@ -97,6 +100,20 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
   }
   job.input.outages = sim::read_outages(folder / "outages.json");
   return job;
+}
+
+/// --gnss-time-offset-s auto.
+void find_time_offset(FuseJob& job) {
+  sim::ReplayInput& in = job.input;
+  const auto found = sim::find_clock_offset({in.imu, in.gnss, {}, in.imu_options, in.gnss_options});
+  if (!found) {
+    throw Error(in.gnss.string() +
+                ": no turns by which to find the offset of its clock from that of " +
+                in.imu.string() + "; say --gnss-time-offset-s in seconds");
+  }
+  in.gnss_options.time_offset += duration_from_seconds(found->offset_s);
+  note(fmt::format("{}: times of fixes are put {:+.3f} s later (sigma {:.3f} s), by the turns",
+                   in.gnss.string(), found->offset_s, found->sigma_s));
 }
 
 bool is_without(const FuseVehicle& vehicle, const VehiclePart& part) {
@@ -174,6 +191,7 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
     }
     job.input.taken_care_of = taken_care_of(options, job);
     inspect(job);
+    if (job.is_time_offset_to_find) find_time_offset(job);
   }
   return jobs;
 }

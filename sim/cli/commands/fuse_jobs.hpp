@@ -46,6 +46,7 @@ struct FuseJob {
   std::string drive{};  ///< name of its folder; empty when the logs were given one by one
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
   bool estimates_mount{false};
+  bool is_time_offset_to_find{false};
   std::string imu_format{};
   std::string gnss_format{};
   sim::ReplayInput input{};

@@ -114,6 +114,7 @@ int run(const InfoOptions& options) {
   LogForms forms = log_forms(options.form);
   logs.imu_options.format = std::move(forms.imu);
   logs.gnss_options.format = std::move(forms.gnss);
+  logs.gnss_options.time_offset = duration_from_seconds(forms.gnss_time_offset_s);
   for (const auto& file : options.files) place(file, logs);
   const sim::InspectedLogs found = sim::inspect(logs);
   show(options.output,

@@ -131,6 +131,7 @@ Json look_json(const sim::LogLook& look) {
           {"shared",
            {{"clock_offset_s", shared.clock_offset_s},
             {"clock_offset_sigma_s", shared.clock_offset_sigma_s},
+            {"turn_correlation", shared.turn_correlation},
             {"turn_ratio", shared.turn_ratio},
             {"turn_ratio_sigma", shared.turn_ratio_sigma},
             {"antenna_lead_m", shared.antenna_lead_m},

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "leeway/logs/gnss_log.hpp"
@@ -34,5 +35,17 @@ struct InspectedLogs {
 /// @param progress  called now and then with the time reached; may be empty
 /// @throws Error when a file cannot be read.
 InspectedLogs inspect(const LogsToInspect& logs, const std::function<void(Time)>& progress = {});
+
+/// What is to be added to GNSS times, and how sure that is.
+struct ClockOffset {
+  double offset_s{};
+  double sigma_s{};
+};
+
+/// The offset between the clocks of two logs, found from their turns and speed changes; within 20
+/// s, or, where the logs share no time, within 20 s of a common begin. Nothing where they do not
+/// match.
+/// @throws Error when a file cannot be read.
+std::optional<ClockOffset> find_clock_offset(LogsToInspect logs);
 
 }  // namespace leeway::sim

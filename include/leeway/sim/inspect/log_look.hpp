@@ -74,7 +74,8 @@ struct FixFigures {
 struct SharedFigures {
   double clock_offset_s{kUnknown};  ///< to be added to GNSS times
   double clock_offset_sigma_s{kUnknown};
-  double turn_ratio{kUnknown};  ///< turn of the course over that of the gyros, about down
+  double turn_correlation{0.0};  ///< at that offset, signed
+  double turn_ratio{kUnknown};   ///< turn of the course over that of the gyros, about down
   double turn_ratio_sigma{kUnknown};
   double antenna_lead_m{kUnknown};  ///< ahead of the point that does not slide sideways
   double odometer_ratio{kUnknown};  ///< odometer over GNSS speed
