@@ -32,6 +32,7 @@ std::string with_sigma(double value, double sigma, const char* unit) {
 }
 
 void print_imu(const sim::ImuFigures& imu) {
+  fmt::print("\n");
   Table table({"<IMU", "<"});
   table.add({"times", time_text(imu.time)});
   table.add({"breaks", breaks_text(imu.time)});
@@ -42,6 +43,7 @@ void print_imu(const sim::ImuFigures& imu) {
 }
 
 void print_gnss(const sim::FixFigures& gnss) {
+  fmt::print("\n");
   Table table({"<GNSS", "<"});
   table.add({"times", time_text(gnss.time)});
   table.add({"breaks", breaks_text(gnss.time)});
@@ -55,6 +57,7 @@ void print_gnss(const sim::FixFigures& gnss) {
 }
 
 void print_shared(const sim::SharedFigures& shared) {
+  fmt::print("\n");
   Table table({"<Together", "<"});
   table.add({"clock offset",
              with_sigma(shared.clock_offset_s, shared.clock_offset_sigma_s, "s, of GNSS times")});
@@ -87,6 +90,7 @@ void print_findings(const std::vector<sim::Finding>& findings) {
     fmt::print("{:<8} {}: {}\n", name(f.certainty), f.log, f.text);
     if (!f.remedy.empty()) fmt::print("{:<8} {}\n", "", "mend it: " + f.remedy);
   }
+  if (!findings.empty()) fmt::print("\n");
 }
 
 void print_figures(const sim::LogLook& look) {
