@@ -1,13 +1,13 @@
 #include "sim/cli/answer.hpp"
 
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/pages/report.hpp"
 
 namespace leeway::cli {
 
 void add_output_options(CLI::App& app, Output& output) {
-  app.add_option("--report", output.report,
-                 "write the answer as an HTML page with charts, complete in one file")
-      ->type_name("FILE.html")
+  add_output_file(app, "--report", output.report,
+                  "write the answer as an HTML page with charts, complete in one file", "FILE.html")
       ->check(CLI::Validator([](std::string&) { return why_no_report(); }, ""));
   add_json_option(app, output.json);
 }

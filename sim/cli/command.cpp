@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "sim/cli/output_files.hpp"
+
 namespace leeway::cli {
 
 std::map<std::string, AddCommand>& commands() {
@@ -16,7 +18,10 @@ void define_command(const char* name, const char* about, const char* footer,
   commands()[name] = [=, prepare = std::move(prepare)](CLI::App& program, int& exit_code) {
     CLI::App* app = program.add_subcommand(name, about);
     app->footer(footer);
-    app->callback([run = prepare(*app), &exit_code] { exit_code = run(); });
+    app->callback([app, run = prepare(*app), &exit_code] {
+      claim_output_files(*app);
+      exit_code = run();
+    });
   };
 }
 

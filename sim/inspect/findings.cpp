@@ -31,15 +31,15 @@ double length_s(const TimeFigures& time) { return time.last_s - time.first_s; }
 std::string known_difference(double ahead_s, double slack_s) {
   const auto is = [&](double known_s) { return std::abs(std::abs(ahead_s) - known_s) <= slack_s; };
   if (is(kGpsEpochUnixS) || is(kGpsEpochUnixS - kLeapS)) {
-    return ": one counts from 1970 (Unix), the other from 1980 (GPS)";
+    return "; one counts from 1970 (Unix), the other from 1980 (GPS)";
   }
   const double weeks = std::round(std::abs(ahead_s) / kWeekS);
   if (weeks > 0.0 && is(weeks * kWeekS)) {
-    return fmt::format(": {:.0f} weeks, seconds of week beside a full count", weeks);
+    return fmt::format("; {:.0f} weeks apart: seconds of week beside a full count", weeks);
   }
   const double hours = std::round(std::abs(ahead_s) / kHourS);
   if (hours > 0.0 && hours <= 14.0 && is(hours * kHourS)) {
-    return fmt::format(": {:.0f} h, a time zone", hours);
+    return fmt::format("; {:.0f} h apart: a time zone", hours);
   }
   return "";
 }
@@ -100,13 +100,14 @@ std::vector<Finding> time_line_findings(const TimeFigures& imu, const TimeFigure
   if (is_shared) return {};
   const double ahead_s = gnss.first_s - imu.first_s;
   const double slack_s = std::max(length_s(imu), length_s(gnss)) + 60.0;
-  return {{Certainty::kCertain, "gnss", "time-line",
-           fmt::format("no fix falls into the time of the IMU data: {:.3f} to {:.3f} s, fixes from "
-                       "{:.3f} s{}",
-                       imu.first_s, imu.last_s, gnss.first_s, known_difference(ahead_s, slack_s)),
-           fmt::format("--gnss-time-offset-s {:.3f} if both began together; then look again, for "
-                       "what is left",
-                       -ahead_s)}};
+  return {
+      {Certainty::kCertain, "gnss", "time-line",
+       fmt::format("no fix falls into the time of the IMU data, {:.3f} to {:.3f} s: fixes are from "
+                   "{:.3f} s on, and both logs must count from the same moment{}",
+                   imu.first_s, imu.last_s, gnss.first_s, known_difference(ahead_s, slack_s)),
+       fmt::format("--gnss-time-offset-s {:.3f} if both began together; then look again, for "
+                   "what is left",
+                   -ahead_s)}};
 }
 
 std::vector<Finding> turn_findings(const TurnMatch& turns, const SharedFigures& shared,

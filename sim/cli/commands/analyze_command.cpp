@@ -4,6 +4,7 @@
 #include "leeway/sim/analysis/coast.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "sim/cli/command.hpp"
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/coast_tables.hpp"
@@ -244,9 +245,9 @@ int run(const AnalyzeChoice& options) {
 
 void add_options(CLI::App& app, AnalyzeChoice& options) {
   add_scene_options(app, options.scene);
-  add_file_option(app, "--out", options.moments,
+  add_output_file(app, "--out", options.moments,
                   "write claimed and true sigmas at every moment of the scene as CSV");
-  add_file_option(app, "--error-budget", options.error_budget, "write the error budget as CSV");
+  add_output_file(app, "--error-budget", options.error_budget, "write the error budget as CSV");
   add_output_options(app, options.output);
 }
 

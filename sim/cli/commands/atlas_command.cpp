@@ -1,5 +1,6 @@
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/tables/atlas_tables.hpp"
 #include "sim/cli/tables/fault_tables.hpp"
 #include "sim/cli/tables/mismatch_tables.hpp"
@@ -115,14 +116,14 @@ void add_options(CLI::App& app, AtlasChoice& options) {
       ->check(CLI::Range(1, 1000000))
       ->type_name("N")
       ->needs(mismatch);
-  add_file_option(app, "--write", options.page, "write what --faults or --mismatch finds as a page")
+  add_output_file(app, "--write", options.page, "write what --faults or --mismatch finds as a page")
       ->excludes(scene);
   add_threads_option(app, options.threads);
   add_output_options(app, options.output);
-  add_file_option(app, "--csv", options.csv, "write a row for each cell as CSV");
-  add_file_option(app, "--markdown", options.markdown,
+  add_output_file(app, "--csv", options.csv, "write a row for each cell as CSV");
+  add_output_file(app, "--markdown", options.markdown,
                   "write matrix and cells as docs/atlas.md has them");
-  add_file_option(app, "--write-expected", options.expected,
+  add_output_file(app, "--write-expected", options.expected,
                   "run both forms of all scenes and write what is found: sim/atlas/expected.csv")
       ->excludes(scene)
       ->excludes(brief);

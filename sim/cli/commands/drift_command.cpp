@@ -2,6 +2,7 @@
 
 #include "leeway/sim/trials/drift.hpp"
 #include "sim/cli/command.hpp"
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {
@@ -156,7 +157,7 @@ void add_options(CLI::App& app, DriftChoice& options) {
   add_default_option(app, "--seed", c.seed, "of the random numbers");
   add_default_option(app, "--latitude", c.latitude_deg, "deg")->type_name("DEG");
   add_default_option(app, "--imu-rate-hz", c.imu_rate_hz, "IMU rate, Hz")->type_name("HZ");
-  add_file_option(app, "--curves", options.curves, "write error against time as CSV (m, s)",
+  add_output_file(app, "--curves", options.curves, "write error against time as CSV (m, s)",
                   "FILE.csv");
   add_output_options(app, options.output);
 }

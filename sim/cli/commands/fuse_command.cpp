@@ -1,5 +1,6 @@
 #include "leeway/logs/csv_writer.hpp"
 #include "sim/cli/command.hpp"
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/pages/fuse_series.hpp"
 #include "sim/cli/tables/fuse_tables.hpp"
 
@@ -33,8 +34,6 @@ bool is_answered(const FuseJob& job) {
 void replay(FuseJob& job, NavigatorConfig config, FuseSeries* series) {
   if (job.estimates_mount) config.C_bs.reset();
   writing([&] {
-    // Unclosed, it leaves nothing: this only tells early whether the file can be created.
-    if (!job.input.solution.empty()) CsvWriter(job.input.solution, {"t_s"});
     Progress bar(job.input.imu.parent_path().filename().string());
     sim::ReplayObserver observer = series ? series->observer() : sim::ReplayObserver{};
     if (bar.visible() && std::filesystem::is_regular_file(job.input.gnss)) {
@@ -166,7 +165,7 @@ void add_timing_options(CLI::App& app, TimingConfig& timing) {
 
 void add_solution_options(CLI::App& app, FuseOptions& options) {
   sim::ReplayInput& files = options.logs.files;
-  add_file_option(app, "--out", files.solution,
+  add_output_file(app, "--out", files.solution,
                   "write the solution as CSV; gzip when it ends in .gz")
       ->excludes(app.get_option("--drive"));
   add_default_option(app, "--out-rate-hz", files.solution_rate_hz,

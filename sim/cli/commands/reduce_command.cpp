@@ -4,6 +4,7 @@
 #include "leeway/sim/scene/filter_file.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -163,7 +164,7 @@ void add_options(CLI::App& app, ReduceChoice& options) {
   add_trial_options(app, options.scene, 10'000, "of every model; in place of the scene's");
   add_repeat_option(app, options.reduction.repeat);
   add_threads_option(app, options.reduction.threads, "of what is not timed; ");
-  add_file_option(app, "--write", options.write,
+  add_output_file(app, "--write", options.write,
                   "write the cheapest filter as a file for --filter, if it keeps the limit",
                   "FILE.toml");
   add_output_options(app, options.output);

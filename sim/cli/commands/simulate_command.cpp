@@ -6,6 +6,7 @@
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/output_files.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {
@@ -40,6 +41,7 @@ struct SimulateChoice {
   std::optional<Eigen::Vector3d> lever_arm_b_m{};  ///< .. to here
   std::optional<std::uint64_t> seed{};
   std::filesystem::path out{};  ///< folder; made when missing
+  bool is_forced{false};        ///< logs in it may be replaced
   double truth_rate_hz{20.0};
   bool gzip{false};
   Output output{};
@@ -158,13 +160,32 @@ SceneLog write_truth(const std::filesystem::path& file, const sim::Scene& scene,
       });
 }
 
+/// @throws Error when the folder has such a file already and it is not to be replaced.
+void claim(const SimulateChoice& options, const std::filesystem::path& file) {
+  if (!options.is_forced && std::filesystem::exists(file)) {
+    throw Error(file.string() + ": is there already; choose another folder, or say --force");
+  }
+  claim_output_file(file);
+}
+
+/// Claims the folder for what is written into it: the logs, and what they are of.
+void claim_folder(const SimulateChoice& options) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) throw WriteFailure(options.out.string() + ": cannot be made: " + error.message());
+  for (const char* log : {"imu.csv", "gnss.csv", "truth.csv"}) {
+    const std::filesystem::path plain = options.out / log;
+    const std::filesystem::path zipped = plain.string() + ".gz";
+    claim(options, options.gzip ? zipped : plain);
+    claim(options, options.gzip ? plain : zipped);
+  }
+  claim(options, options.out / "scene.json");
+}
+
 /// Writes the logs one after the other, in constant memory. Fixes in outages are left out, outliers
 /// are in; a fix has the time it is valid at, whatever the latency.
 /// @throws Error when a log cannot be written.
 SceneLogs write_logs(const SimulateChoice& options, const sim::Scene& scene) {
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) throw Error(options.out.string() + ": cannot be made: " + error.message());
   const std::string end = options.gzip ? ".csv.gz" : ".csv";
   const std::uint64_t seed = seed_of(options, scene);
   return {write_imu(options.out / ("imu" + end), scene, seed),
@@ -194,6 +215,7 @@ int run(const SimulateChoice& options) {
   const sim::Scene scene =
       options.scene.empty() ? scene_from_options(options) : scene_from_file(options.scene);
   validate(scene);
+  claim_folder(options);
   const std::filesystem::path description = options.out / "scene.json";
   const SceneLogs logs = writing([&] {
     const SceneLogs written = write_logs(options, scene);
@@ -245,6 +267,7 @@ void add_options(CLI::App& app, SimulateChoice& options) {
   app.add_option("--seed", options.seed, "of the random numbers (default: 1, or the scene's)");
   add_file_option(app, "--out", options.out, "folder to write to; made when missing", "DIR")
       ->required();
+  app.add_flag("--force", options.is_forced, "replace the logs that are in the folder already");
   app.add_flag("--gzip", options.gzip, "compress the logs: imu.csv.gz and so on");
   add_json_option(app, options.output.json);
 }
