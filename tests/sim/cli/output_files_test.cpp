@@ -18,11 +18,11 @@ TEST_CASE("2026-12-01: no output replaces an input, another output, or what is n
   const std::string before = read_file(simulated().gnss);
   for (const std::string& words :
        {simulated().fuse() + " --out " + quoted(simulated().gnss),
-        simulated().fuse() + " --out " + page + " --report " + page,
+        "analyze --scene " + quoted(scene) + " --out " + page + " --error-budget " + page,
         simulated().fuse() + " --out " + quoted(fifo), simulated().fuse() + " --out /dev/null",
         simulated().fuse() + " --out " + quoted(dir / ""),
         "analyze --scene " + quoted(scene) + " --out " + quoted(scene),
-        "drift --trials 2 --imu-rate-hz 1 --curves /dev/null"}) {
+        std::string("drift --trials 2 --imu-rate-hz 1 --curves /dev/null")}) {
     CAPTURE(words);
     const Outcome outcome = leeway(words);
     CHECK(outcome.exit_code == 1);
