@@ -97,7 +97,7 @@ void add_log_form_options(CLI::App& app, LogForm& form) {
                  "position (m), and maybe of velocity (m/s)")
       ->delimiter(',')
       ->expected(2, 4)
-      ->check(CLI::Range(1e-6, 1e5))
+      ->check(in_range(1e-6, 1e5))
       ->type_name("H,V[,VH,VV]");
   word("--gnss-time-offset-s", form.gnss_time_offset, "S|auto",
        "added to the times of the GNSS log, s; auto: found from the turns of both logs");

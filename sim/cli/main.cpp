@@ -33,6 +33,31 @@ void refuse_unknown_command(const std::vector<std::string>& words) {
                         CLI::ExitCodes::ExtrasError);
 }
 
+/// CLI11 would only list what it did not expect. Empty: every option is one of the command.
+std::string unknown_option(const CLI::App& program, const std::vector<std::string>& words) {
+  if (words.empty() || !commands().contains(words[0])) return {};
+  std::vector<std::string> names;
+  for (const CLI::Option* option : program.get_subcommand(words[0])->get_options()) {
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  }
+  for (const std::string& word : words) {
+    if (!word.starts_with("--") || word.size() == 2) continue;
+    const std::string name = word.substr(2, word.find('=') - 2);
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::vector<std::string_view> accepted(names.begin(), names.end());
+    const std::string_view meant = leeway::sim::meant_by(name, accepted);
+    const std::string hint = meant.empty() ? "" : fmt::format(": did you mean '--{}'?", meant);
+    return fmt::format("{} has no option '--{}'{}", words[0], name, hint);
+  }
+  return {};
+}
+
+void tell(const std::string& what) {
+  // Under mpirun every rank was given the same wrong words.
+  if (!leeway::sim::Ranks::launched_first()) return;
+  fmt::print(stderr, "leeway: {} (see leeway --help, leeway COMMAND --help)\n", what);
+}
+
 int run(std::vector<std::string> words) {
   CLI::App program(kAbout, "leeway");
   program.set_version_flag("--version", "leeway " LEEWAY_VERSION);
@@ -44,15 +69,17 @@ int run(std::vector<std::string> words) {
   remember_command_line(words);
   try {
     refuse_unknown_command(words);
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
-    program.parse(words);
+    // In reverse, as CLI11 wants them.
+    std::vector<std::string> reversed(words.rbegin(), words.rend());
+    program.parse(reversed);
   } catch (const CLI::Success& help_or_version) {
     program.exit(help_or_version);
+  } catch (const CLI::ExtrasError& error) {
+    const std::string option = unknown_option(program, words);
+    tell(option.empty() ? error.what() : option);
+    return kUnusable;
   } catch (const CLI::ParseError& error) {
-    // Under mpirun every rank was given the same wrong words.
-    if (leeway::sim::Ranks::launched_first()) {
-      fmt::print(stderr, "leeway: {} (see leeway --help, leeway COMMAND --help)\n", error.what());
-    }
+    tell(error.what());
     return kUnusable;
   }
   if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "leeway/sim/sensors/imu_catalogue.hpp"
 #include "leeway/sim/sensors/imu_class_name.hpp"
@@ -30,13 +31,13 @@ NamedImu part_named(const std::string& name) {
   return {std::string(part.name), sim::imu_model(part)};
 }
 
-CLI::Validator within(const Range& range, const char* otherwise) {
-  return {[=](std::string& text) {
+CLI::Validator within(const Range& range, std::string otherwise, std::string description = "") {
+  return {[range, otherwise = std::move(otherwise)](std::string& text) {
             double value = 0.0;
             const bool is_within = parse_numbers(text, &value, 1) && range.contains(value);
             return is_within ? std::string() : text + otherwise;
           },
-          ""};
+          std::move(description)};
 }
 
 }  // namespace
@@ -61,17 +62,22 @@ template CLI::Option* add_numbers<2>(CLI::App&, const std::string&, const std::s
 template CLI::Option* add_numbers<3>(CLI::App&, const std::string&, const std::string&,
                                      std::optional<Eigen::Vector3d>&, const std::string&);
 
+CLI::Validator in_range(double low, double high) {
+  const std::string range = fmt::format("{:g} to {:g}", low, high);
+  return within({low, high}, " is not a number from " + range, range);
+}
+
 CLI::Validator positive() { return within(kPositive, " is not above 0"); }
 
 CLI::Validator not_negative() { return within(kNotNegative, " is below 0"); }
 
 void add_threads_option(CLI::App& app, int& threads, const std::string& of_what) {
   add_default_option(app, "--threads", threads, of_what + "0: all processors")
-      ->check(CLI::Range(0, 1024));
+      ->check(in_range(0, 1024));
 }
 
 void add_repeat_option(CLI::App& app, int& repeat) {
-  add_default_option(app, "--repeat", repeat, "timed runs of each")->check(CLI::Range(1, 1000));
+  add_default_option(app, "--repeat", repeat, "timed runs of each")->check(in_range(1, 1000));
 }
 
 bool is_imu_class(const std::string& imu) { return imu == kMems || from_name<ImuClass>(imu); }

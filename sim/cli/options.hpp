@@ -18,6 +18,9 @@ CLI::Option* add_numbers(CLI::App& app, const std::string& name, const std::stri
                          std::optional<Eigen::Matrix<double, N, 1>>& value,
                          const std::string& description);
 
+/// Refuses what is no number from low to high.
+CLI::Validator in_range(double low, double high);
+
 /// Refuses numbers that are not above zero.
 CLI::Validator positive();
 

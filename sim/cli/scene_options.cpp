@@ -84,14 +84,14 @@ void add_scene_options(CLI::App& app, SceneChoice& choice) {
   add_limit_options(app, choice.limit);
   app.add_option("--at", choice.at_s,
                  "end the scene at this time, s, earlier or later than it does")
-      ->check(CLI::Range(1.0, 1e6))
+      ->check(in_range(1.0, 1e6))
       ->type_name("SECONDS");
   app.add_option("--interval-s", choice.interval_s, "time between fixes, s")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(in_range(1e-3, 1e6));
 }
 
 void add_trial_options(CLI::App& app, SceneChoice& choice, int most, const std::string& meaning) {
-  app.add_option("--trials", choice.trials, meaning)->check(CLI::Range(1, most));
+  app.add_option("--trials", choice.trials, meaning)->check(in_range(1, most));
   app.add_option("--first-seed", choice.first_seed,
                  "trial k has this seed + k; in place of the scene's")
       ->check(not_negative());

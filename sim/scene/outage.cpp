@@ -4,10 +4,28 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "leeway/earth/error.hpp"
 
 namespace leeway::sim {
+
+namespace {
+
+constexpr const char* kWanted = "; wanted: [{\"start_s\": 60.5, \"duration_s\": 10}, ..]";
+
+struct MissingNumber {
+  const char* key;
+};
+
+double number_of(const nlohmann::json& entry, const char* key) {
+  if (!entry.is_object() || !entry.contains(key) || !entry[key].is_number()) {
+    throw MissingNumber{key};
+  }
+  return entry[key].get<double>();
+}
+
+}  // namespace
 
 std::vector<Outage> read_outages(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -15,7 +33,7 @@ std::vector<Outage> read_outages(const std::filesystem::path& path) {
   std::vector<Outage> outages;
   try {
     for (const auto& entry : nlohmann::json::parse(file)) {
-      const Outage outage{entry.at("start_s").get<double>(), entry.at("duration_s").get<double>()};
+      const Outage outage{number_of(entry, "start_s"), number_of(entry, "duration_s")};
       if (!std::isfinite(outage.start_s) || !(outage.duration_s > 0.0 && outage.duration_s < 1e6)) {
         throw Error(path.string() + ": outage " + std::to_string(outages.size() + 1) +
                     ": start_s must be finite and duration_s between 0 and 1e6 s");
@@ -23,8 +41,11 @@ std::vector<Outage> read_outages(const std::filesystem::path& path) {
       outages.push_back(outage);
     }
   } catch (const nlohmann::json::exception& error) {
-    throw Error(path.string() + ": outage " + std::to_string(outages.size() + 1) + ": " +
-                error.what() + "; wanted: [{\"start_s\": 60.5, \"duration_s\": 10}, ..]");
+    const std::string_view what = error.what();  // "[json.exception.parse_error.101] ..."
+    throw Error(path.string() + ": " + std::string(what.substr(what.find("] ") + 2)) + kWanted);
+  } catch (const MissingNumber& missing) {
+    throw Error(path.string() + ": outage " + std::to_string(outages.size() + 1) +
+                " has no number '" + missing.key + "'" + kWanted);
   }
   return outages;
 }

@@ -255,8 +255,23 @@ TomlDocument TomlDocument::from_file(const std::filesystem::path& path) {
   return from_text(text.str(), path.string());
 }
 
+/// Refuses keys of so many parts that the parser, which calls itself for each, would run out of
+/// stack. Strings over several lines are not told apart: no text has so many dots in a line.
+void TomlDocument::refuse_deep_keys(std::string_view text) const {
+  constexpr std::ptrdiff_t kMostParts = 256;
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view key = text.substr(0, std::min(end, text.find_first_of("=\"'#")));
+    if (std::count(key.begin(), key.end(), '.') > kMostParts) {
+      throw Error(fmt::format("{}:{}: a key of more than {} parts", name_, line, kMostParts));
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
 TomlDocument TomlDocument::from_text(std::string_view text, std::string name) {
   TomlDocument document(std::move(name));
+  document.refuse_deep_keys(text);
   try {
     document.root_ = toml::parse(text, document.name_);
   } catch (const toml::parse_error& error) {

@@ -150,6 +150,7 @@ class TomlDocument {
 
  private:
   explicit TomlDocument(std::string name) : name_(std::move(name)) {}
+  void refuse_deep_keys(std::string_view text) const;
 
   std::string name_;
   toml::table root_{};

@@ -113,7 +113,7 @@ void add_options(CLI::App& app, AtlasChoice& options) {
                    "the default navigator with IMUs that it does not know in place of the scenes");
   mismatch->excludes(scene)->excludes(faults);
   app.add_option("--trials", options.mismatch_trials, "of each cell of --mismatch")
-      ->check(CLI::Range(1, 1000000))
+      ->check(in_range(1, 1000000))
       ->type_name("N")
       ->needs(mismatch);
   add_output_file(app, "--write", options.page, "write what --faults or --mismatch finds as a page")

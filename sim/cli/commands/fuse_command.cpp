@@ -111,11 +111,11 @@ void add_start_options(CLI::App& app, FuseLogs& logs) {
                      "heading of the vehicle at the start of the IMU log, clockwise from true "
                      "north, deg, where it is known: no motion is needed to find it")
           ->type_name("DEG")
-          ->check(CLI::Range(-360.0, 360.0))
+          ->check(in_range(-360.0, 360.0))
           ->excludes(app.get_option("--drive"));
   add_default_option(app, "--start-heading-sigma-deg", logs.start_heading_sigma_deg,
                      "standard deviation of --start-heading-deg, deg")
-      ->check(CLI::Range(1e-3, 180.0))
+      ->check(in_range(1e-3, 180.0))
       ->needs(heading);
 }
 
@@ -170,7 +170,7 @@ void add_solution_options(CLI::App& app, FuseOptions& options) {
       ->excludes(app.get_option("--drive"));
   add_default_option(app, "--out-rate-hz", files.solution_rate_hz,
                      "solution epochs per second, in the file and in the RMS errors")
-      ->check(CLI::Range(1e-3, 1e4));
+      ->check(in_range(1e-3, 1e4));
   app.add_flag("--as-is", files.is_as_is,
                "go on even if the logs are certainly not what they say (see leeway info)");
   app.add_flag("--verbose", options.verbose, "list every outage, also when they are more than 20");

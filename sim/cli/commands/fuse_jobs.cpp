@@ -96,7 +96,10 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
       set_truth_window(job.input, Eigen::Vector2d(window.get<std::array<double, 2>>().data()));
     }
   } catch (const Json::exception& error) {
-    throw Error(meta_path.string() + ": " + error.what());
+    const std::string_view what = error.what();  // "[json.exception.out_of_range.403] ..."
+    throw Error(
+        meta_path.string() + ": " + std::string(what.substr(what.find("] ") + 2)) +
+        R"(; wanted: {"mount_rpy_deg": [r, p, y], "reference_window_s": [from, to] or null})");
   }
   job.input.outages = sim::read_outages(folder / "outages.json");
   return job;

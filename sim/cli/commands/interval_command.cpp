@@ -7,6 +7,7 @@
 #include "sim/cli/jobs/interval_jobs.hpp"
 #include "sim/cli/jobs/need.hpp"
 #include "sim/cli/on_ranks.hpp"
+#include "sim/cli/options.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/interval_tables.hpp"
 
@@ -43,7 +44,7 @@ void add_options(CLI::App& app, IntervalCommand& command) {
   add_scene_options(app, choice.scene);
   auto* confirm = app.add_option("--confirm", choice.confirm_trials,
                                  "run so many trials of the scene's estimator at every answer")
-                      ->check(CLI::Range(0, 1000000))
+                      ->check(in_range(0, 1000000))
                       ->type_name("N");
   app.add_option("--confirm-limit", choice.confirm_limits,
                  "confirm the answers for these limits only; several with commas")

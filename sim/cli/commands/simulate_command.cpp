@@ -231,7 +231,7 @@ int run(const SimulateChoice& options) {
 void add_gnss_options(CLI::App& app, GnssOptions& g) {
   add_default_option(app, "--gnss-interval-s", g.interval_s,
                      "time between fixes, s; the first after one")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(in_range(1e-3, 1e6));
   add_default_option(app, "--gnss-sigma-h-m", g.sigma_h_m,
                      "white position error, 1 sigma north and east, m");
   add_default_option(app, "--gnss-sigma-v-m", g.sigma_v_m, "white position error, 1 sigma down, m");
@@ -253,9 +253,9 @@ void add_options(CLI::App& app, SimulateChoice& options) {
   app.add_option("--trajectory", options.trajectory, "the motion")
       ->transform(named<sim::TrajectoryKind>(kFactories.size()));
   add_default_option(app, "--duration-s", options.duration_s, "length, s")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(in_range(1.0, 1e6));
   add_default_option(app, "--imu-rate-hz", options.imu_rate_hz, "IMU increments per second")
-      ->check(CLI::Range(1.0, 1e4));
+      ->check(in_range(1.0, 1e4));
   add_imu_options(app, options.imu);
   add_gnss_options(app, options.gnss);
   add_numbers<3>(app, "--lever", "X,Y,Z", options.lever_arm_b_m,
@@ -263,7 +263,7 @@ void add_options(CLI::App& app, SimulateChoice& options) {
   exclude_all(app, add_file_option(app, "--scene", options.scene,
                                    "scene file, in place of all options above it", "FILE.toml"));
   add_default_option(app, "--truth-rate-hz", options.truth_rate_hz, "truth rows per second")
-      ->check(CLI::Range(0.1, 1e4));
+      ->check(in_range(0.1, 1e4));
   app.add_option("--seed", options.seed, "of the random numbers (default: 1, or the scene's)");
   add_file_option(app, "--out", options.out, "folder to write to; made when missing", "DIR")
       ->required();
