@@ -12,25 +12,17 @@
 namespace leeway::sim {
 namespace {
 
-constexpr Duration kRest = std::chrono::seconds{2};
 constexpr double kSameTimeS = 1e-6;
 
 /// The motion, with the vehicle wholly still where it stands: what is left of its speed there is
 /// the filter's.
-std::vector<NavStateNed> motion_of(const std::vector<Solution>& solution) {
+std::vector<NavStateNed> motion_of(const LogSurvey& survey) {
   std::vector<NavStateNed> rows;
-  std::size_t stood = 0;  // rows that a rest may be made of
-  for (const Solution& s : solution) {
-    rows.push_back(ned_from_nav_state(s.nav));
-    stood = s.nav.v_e_mps.norm() < kStandingMps ? stood + 1 : 0;
-    if (stood == 0) continue;
-    const std::size_t first = rows.size() - stood;
-    if (rows.back().time - rows[first].time < kRest) continue;
-    for (std::size_t k = first; k < rows.size(); ++k) {
-      const Time time = rows[k].time;
-      rows[k] = rows[first];
-      rows[k].time = time;
-    }
+  for (std::size_t k = 0; k < survey.solution.size(); ++k) {
+    const Solution& s = survey.solution[k];
+    const bool still_rests = k > 0 && survey.at_rest[k] && survey.at_rest[k - 1];
+    rows.push_back(still_rests ? rows.back() : ned_from_nav_state(s.nav));
+    rows.back().time = s.nav.time;
   }
   return rows;
 }
@@ -38,6 +30,15 @@ std::vector<NavStateNed> motion_of(const std::vector<Solution>& solution) {
 InitialSigma initial_of(const Solution& s) {
   return {s.sigma_attitude_rad.head<2>().maxCoeff(), s.sigma_attitude_rad.z(),
           s.sigma_velocity_n_mps.maxCoeff(), s.sigma_position_n_m.head<2>().maxCoeff()};
+}
+
+/// The model with its noise as large as the navigator has found it.
+ImuErrorModel with_noise(ImuErrorModel imu, double sigma_scale) {
+  for (TriadErrorModel* triad : {&imu.accelerometer, &imu.gyro}) {
+    triad->noise_density *= sigma_scale;
+    triad->in_run.sigma *= sigma_scale;
+  }
+  return imu;
 }
 
 /// A receiver whose position errs as the filter takes it to: white or correlated.
@@ -107,10 +108,11 @@ ExpectedErrors::ExpectedErrors(const ReplayInput& input, const LogSurvey& survey
   parameters.file = input.imu;
   parameters.max_gap_s = config.max_jump_s;
   scene_.name = input.imu.string();
-  scene_.trajectory = recorded_trajectory(motion_of(survey.solution), parameters);
+  scene_.trajectory = recorded_trajectory(motion_of(survey), parameters);
   scene_.duration_s = scene_.trajectory.duration_s;
   scene_.filter = config.filter;
-  scene_.imu = config.filter.imu;
+  scene_.imu = with_noise(config.filter.imu, survey.imu_sigma_scale);
+  scene_.filter.imu = scene_.imu;
   scene_.estimator = SceneEstimator::kNavigator;
   scene_.gnss.errors = receiver_of(survey.receiver, config.filter);
   scene_.gnss.settle_interval_s = survey.receiver.interval_s;

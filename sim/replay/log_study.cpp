@@ -115,7 +115,7 @@ class Study {
     answer_.settled_s = span_.settled_s;
     answer_.last_s = span_.last_s;
     answer_.receiver = survey_.receiver;
-    answer_.imu_sigma_scale = survey_.result.health.imu_sigma_scale;
+    answer_.imu_sigma_scale = survey_.imu_sigma_scale;
     outages_ = outages_of(survey_, span_, study_);
     thinnings_ = thinnings_of(survey_, span_, study_);
     measure();

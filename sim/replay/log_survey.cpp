@@ -10,6 +10,7 @@ namespace leeway::sim {
 namespace {
 
 constexpr double kSurveyRateHz = 10.0;
+constexpr double kMedian = 0.5;
 
 /// Standard deviations that a receiver claims: per horizontal axis and down.
 struct ClaimedSigmas {
@@ -38,7 +39,6 @@ void read_fixes(const ReplayInput& input, LogSurvey& survey) {
     position.add(fix->position->R_e_m2, C_en);
     if (fix->velocity) velocity.add(fix->velocity->R_e_m2ps2, C_en);
   }
-  constexpr double kMedian = 0.5;
   survey.receiver.interval_s = quantile_of(intervals_s, kMedian);
   survey.receiver.sigma_h_m = quantile_of(position.horizontal, kMedian);
   survey.receiver.sigma_v_m = quantile_of(position.down, kMedian);
@@ -62,10 +62,21 @@ LogSurvey survey_log(const ReplayInput& input, const NavigatorConfig& config,
   observer.epoch = [&](const Solution& s, const std::optional<TruthRecord>&) {
     survey.solution.push_back(s);
   };
+  std::vector<double> position_scales;
+  std::vector<double> velocity_scales;
+  std::vector<double> imu_scales;
+  observer.health = [&](const Health& health) {
+    survey.at_rest.push_back(health.at_rest);
+    position_scales.push_back(health.position_sigma_scale);
+    velocity_scales.push_back(health.velocity_sigma_scale);
+    imu_scales.push_back(health.imu_sigma_scale);
+  };
   survey.result = replay(plain, config, observer);
+  if (!survey.result.has_solution) return survey;
+  survey.imu_sigma_scale = quantile_of(imu_scales, kMedian);
   LogReceiver& receiver = survey.receiver;
-  receiver.position_scale = survey.result.health.position_sigma_scale;
-  receiver.velocity_scale = survey.result.health.velocity_sigma_scale;
+  receiver.position_scale = quantile_of(position_scales, kMedian);
+  receiver.velocity_scale = quantile_of(velocity_scales, kMedian);
   receiver.sigma_h_m *= receiver.position_scale;
   receiver.sigma_v_m *= receiver.position_scale;
   receiver.sigma_h_mps *= receiver.velocity_scale;

@@ -12,8 +12,10 @@ namespace leeway::sim {
 /// The fused motion and what the logs told on the way.
 struct LogSurvey {
   std::vector<Solution> solution{};  ///< ten times a second
+  std::vector<bool> at_rest{};       ///< of each, by the navigator's detector
   std::vector<double> fixes_s{};     ///< times of the fixes with a position
   LogReceiver receiver{};
+  double imu_sigma_scale{1.0};  ///< median
   ReplayResult result{};
 };
 

@@ -168,6 +168,7 @@ class Replay {
     const Estimate& estimate = navigator_.filter().estimate();
     const std::optional<TruthRecord> truth = reference_ ? reference_->at(t) : std::nullopt;
     if (truth) rms_.add(estimate.nav, *truth);
+    if (observer_.health) observer_.health(navigator_.health());
     if (!writer_ && !observer_.epoch) return;
     Solution s = navigator_.solution();
     if (latest_dof_ > 0) {

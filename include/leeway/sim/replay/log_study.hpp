@@ -58,7 +58,7 @@ struct ExpectedFixError {
 /// What the receiver of a log is taken for.
 struct LogReceiver {
   double interval_s{};  ///< between fixes: the median
-  double sigma_h_m{};   ///< medians over the fixes, per axis, by the navigator's scales at the end
+  double sigma_h_m{};   ///< medians over the fixes, per axis, by the median of the navigator's scales
   double sigma_v_m{};
   double sigma_h_mps{};
   double sigma_v_mps{};
@@ -73,7 +73,7 @@ struct LogStudy {
   double settled_s{};  ///< from here on fixes are withheld
   double last_s{};
   LogReceiver receiver{};
-  double imu_sigma_scale{1.0};  ///< by the navigator, at the end
+  double imu_sigma_scale{1.0};  ///< by the navigator: median
   std::vector<OutageError> outages{};
   std::vector<FixError> errors{};            ///< measured
   std::vector<ExpectedFixError> expected{};  ///< of the same fixes
