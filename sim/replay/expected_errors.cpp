@@ -7,23 +7,18 @@
 #include "leeway/model/gnss_measurement.hpp"
 #include "leeway/model/horizontal.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
+#include "leeway/sim/analysis/scene_tracks.hpp"
 #include "leeway/sim/motion/recorded_trajectory.hpp"
 
 namespace leeway::sim {
 namespace {
 
 constexpr double kSameTimeS = 1e-6;
+constexpr double kStepS = 1.0;
 
-/// The motion, with the vehicle wholly still where it stands: what is left of its speed there is
-/// the filter's.
 std::vector<NavStateNed> motion_of(const LogSurvey& survey) {
   std::vector<NavStateNed> rows;
-  for (std::size_t k = 0; k < survey.solution.size(); ++k) {
-    const Solution& s = survey.solution[k];
-    const bool still_rests = k > 0 && survey.at_rest[k] && survey.at_rest[k - 1];
-    rows.push_back(still_rests ? rows.back() : ned_from_nav_state(s.nav));
-    rows.back().time = s.nav.time;
-  }
+  for (const Solution& s : survey.solution) rows.push_back(ned_from_nav_state(s.nav));
   return rows;
 }
 
@@ -119,7 +114,14 @@ ExpectedErrors::ExpectedErrors(const ReplayInput& input, const LogSurvey& survey
   scene_.vehicle = vehicle_of(input, survey, config.vehicle, scene_.duration_s);
   scene_.initial = initial_of(survey.solution.front());
   scene_.limit.metric = metric;
-  track_.emplace(error_track(scene_));
+  const auto rests_at = [&](double t_s) {
+    const auto row = std::lower_bound(survey.solution.begin(), std::prev(survey.solution.end()),
+                                      time_from_seconds(start_s_ + t_s),
+                                      [](const Solution& s, Time t) { return s.nav.time < t; });
+    return static_cast<bool>(
+        survey.at_rest[static_cast<std::size_t>(row - survey.solution.begin())]);
+  };
+  track_.emplace(SceneTracks().of(scene_, kStepS, rests_at));
 }
 
 std::vector<Eigen::Vector2d> ExpectedErrors::variances_m2(
