@@ -83,10 +83,12 @@ struct OutageCourse {
   std::vector<double> error_h_m{};
 };
 
-/// The outage as long as each duration that it has come to.
+/// The outage as long as each duration that fits before the end of the solution.
 void add_outages(const Outage& outage, const OutageCourse& course,
-                 const std::vector<double>& durations_s, std::vector<OutageError>& all) {
+                 const std::vector<double>& durations_s, double last_s,
+                 std::vector<OutageError>& all) {
   for (const double duration_s : durations_s) {
+    if (outage.start_s + duration_s > last_s) break;
     OutageError error{outage.start_s, duration_s};
     double end_s = -kEpochSlackS;
     for (std::size_t k = 0; k < course.since_s.size(); ++k) {
@@ -135,7 +137,8 @@ class Study {
         study_.threads);
     for (const BranchesOfJob& job : jobs) {
       for (std::size_t k = 0; k < job.outages.size(); ++k) {
-        add_outages(job.outages[k], job.courses[k], study_.durations_s, answer_.outages);
+        add_outages(job.outages[k], job.courses[k], study_.durations_s, span_.last_s,
+                    answer_.outages);
       }
       answer_.errors.insert(answer_.errors.end(), job.errors.begin(), job.errors.end());
     }
