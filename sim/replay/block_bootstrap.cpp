@@ -10,7 +10,7 @@
 namespace leeway::sim {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoQuantile = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kResamplings = 200;
 constexpr double kTail = 0.05;
 
@@ -41,7 +41,7 @@ double quantile_of(std::span<const BlockValue> sorted, const BlockCounts& counts
     sum += weight_of(v, counts);
     if (sum >= rank) return v.value;
   }
-  return kNone;
+  return kNoQuantile;
 }
 
 double rms_of(std::span<const BlockValue> values, const BlockCounts& counts) {

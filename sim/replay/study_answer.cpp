@@ -11,7 +11,7 @@ namespace {
 
 using Outcome = SupportedInterval::Outcome;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoSize = std::numeric_limits<double>::quiet_NaN();
 /// Errors of a fix last this long even where fixes are close: as long as those of receivers do.
 constexpr double kShortestBlockS = 60.0;
 /// Fewer errors than this at an interval tell no percentile.
@@ -76,7 +76,7 @@ ErrorsByInterval errors_by_interval(std::span<const LogStudy* const> studies, do
 }
 
 double size_of(ErrorMetric metric, const BlockValues& sorted, const BlockCounts& counts) {
-  if (sorted.size() < kFewestErrors) return kNone;
+  if (sorted.size() < kFewestErrors) return kNoSize;
   const double probability = quantile_probability(metric);
   return probability > 0.0 ? quantile_of(sorted, counts, probability) : rms_of(sorted, counts);
 }
@@ -103,7 +103,7 @@ double radius_m(const PairsOfVariances& variances_m2, double probability) {
 }
 
 double expected_size_m(ErrorMetric metric, const PairsOfVariances& variances_m2) {
-  if (variances_m2.size() < kFewestErrors) return kNone;
+  if (variances_m2.size() < kFewestErrors) return kNoSize;
   const double probability = quantile_probability(metric);
   if (probability > 0.0) return radius_m(variances_m2, probability);
   double sum_m2 = 0.0;
@@ -113,7 +113,7 @@ double expected_size_m(ErrorMetric metric, const PairsOfVariances& variances_m2)
 
 struct Crossing {
   Outcome outcome{Outcome::kUnknown};
-  double interval_s{kNone};
+  double interval_s{kNoSize};
 };
 
 /// Where errors over the studied intervals first exceed a limit: between two of them in logarithms,
@@ -186,7 +186,7 @@ IntervalErrors interval_errors(std::span<const LogStudy* const> studies, ErrorMe
 }  // namespace
 
 double SupportedInterval::expected_over_measured() const {
-  if (measured_outcome != Outcome::kFound || expected_outcome != Outcome::kFound) return kNone;
+  if (measured_outcome != Outcome::kFound || expected_outcome != Outcome::kFound) return kNoSize;
   return expected_s / measured_s.value;
 }
 

@@ -95,7 +95,8 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
   } catch (const Json::exception& error) {
     throw Error(meta_path.string() + ": " + error.what());
   }
-  job.input.outages = sim::read_outages(folder / "outages.json");
+  const std::filesystem::path outages = folder / "outages.json";
+  if (std::filesystem::exists(outages)) job.input.outages = sim::read_outages(outages);
   return job;
 }
 

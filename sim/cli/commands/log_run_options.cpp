@@ -7,7 +7,8 @@ void add_file_options(CLI::App& app, FuseLogs& logs) {
   CLI::Option* drive =
       app.add_option("--drive", logs.drives,
                      "a folder with imu.csv.gz, gnss.csv.gz, reference_position.csv.gz, meta.json "
-                     "(mount_rpy_deg, reference_window_s) and outages.json; may be repeated")
+                     "(mount_rpy_deg, reference_window_s) and maybe outages.json, or a folder of "
+                     "such; may be repeated")
           ->type_name("DIR");
   const auto file = [&app, drive](const std::string& name, std::filesystem::path& path,
                                   const std::string& description) {

@@ -73,7 +73,7 @@ ReplayAnswer answer_of(const std::vector<FuseJob>& jobs, std::vector<sim::LogStu
   return answer;
 }
 
-bool is_answered(const NamedStudy& log) {
+bool has_errors(const NamedStudy& log) {
   return std::any_of(log.answer.intervals.begin(), log.answer.intervals.end(),
                      [](const auto& e) { return e.fixes > 0; });
 }
@@ -106,7 +106,7 @@ int run_on(const ReplayCommand& command, const sim::Ranks& ranks) {
          print_tables(answer, study);
          fmt::print("\nIMU model: {}\n", imu.name);
        });
-  return std::all_of(answer.logs.begin(), answer.logs.end(), is_answered) ? kSuccess : kNoAnswer;
+  return std::all_of(answer.logs.begin(), answer.logs.end(), has_errors) ? kSuccess : kNoAnswer;
 }
 
 int run(const ReplayCommand& command) {

@@ -11,7 +11,7 @@ namespace leeway::cli {
 namespace {
 
 using sim::Banded;
-using Outcome = sim::SupportedInterval::Outcome;
+using Supports = sim::SupportedInterval::Outcome;
 
 std::string with_band(const Banded& b, int decimals) {
   if (std::isnan(b.low)) return number(b.value, decimals);
@@ -19,11 +19,11 @@ std::string with_band(const Banded& b, int decimals) {
                      number(b.high, decimals));
 }
 
-const char* sign_of(Outcome outcome) {
-  return outcome == Outcome::kShorter ? "below " : outcome == Outcome::kLonger ? "at least " : "";
+const char* sign_of(Supports outcome) {
+  return outcome == Supports::kShorter ? "below " : outcome == Supports::kLonger ? "at least " : "";
 }
 
-std::string interval_text(Outcome outcome, double interval_s) {
+std::string interval_text(Supports outcome, double interval_s) {
   return sign_of(outcome) + seconds(interval_s);
 }
 
@@ -86,7 +86,7 @@ std::vector<double> intervals_of_logs(const ReplayAnswer& answer, std::size_t li
   std::vector<double> intervals_s;
   for (const NamedStudy& log : answer.logs) {
     const sim::SupportedInterval& s = log.answer.supported[limit];
-    if (s.measured_outcome != Outcome::kUnknown) intervals_s.push_back(s.measured_s.value);
+    if (s.measured_outcome != Supports::kUnknown) intervals_s.push_back(s.measured_s.value);
   }
   std::sort(intervals_s.begin(), intervals_s.end());
   return intervals_s;
@@ -104,6 +104,7 @@ void print_distribution(const ReplayAnswer& answer) {
                seconds(s.back())});
   }
   table.print();
+  fmt::print("  Of a log whose answer is \"at least\" or \"below\": that number.\n");
 }
 
 Json banded_json(const Banded& b) { return {{"value", b.value}, {"low", b.low}, {"high", b.high}}; }

@@ -23,7 +23,6 @@ void make_drives(const TempDir& dir, const std::vector<std::string>& names) {
     // Logs are told from their content, whatever they are called.
     std::filesystem::copy_file(simulated().imu, dir / name / "imu.csv.gz");
     std::filesystem::copy_file(simulated().gnss, dir / name / "gnss.csv.gz");
-    dir.file(name + "/outages.json", "[]");
     dir.file(name + "/meta.json", R"({"mount_rpy_deg": [180, 0, 0], "reference_window_s": null})");
   }
 }
