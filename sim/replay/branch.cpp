@@ -83,7 +83,7 @@ void Branch::take_withheld(Reference* reference) {
     used_ = due;
     if (error && observer_.thinned) {
       const double course_rad = course_over_ground_rad(navigator_.filter().estimate().nav);
-      observer_.thinned({plan_.index, to_seconds(t), *error, course_rad, sigma_h_m()});
+      observer_.thinned({plan_.index, to_seconds(t), *error, course_rad});
     }
     navigator_.push(*withheld_);
   }

@@ -158,8 +158,9 @@ class Study {
       jobs.back().thinnings.push_back(thinnings_[k]);
     }
     // So many follow each other before one may begin where another has ended.
-    const double together = std::ceil(study_.durations_s.back() / study_.every_s) + 1.0;
-    const auto passes = static_cast<std::size_t>(std::ceil(together / kBranchesOfJob));
+    const auto together =
+        static_cast<std::size_t>(std::ceil(study_.durations_s.back() / study_.every_s)) + 1;
+    const std::size_t passes = 1 + (together - 1) / kBranchesOfJob;
     const std::size_t first = jobs.size();
     for (std::size_t k = 0; k < outages_.size(); ++k) {
       if (k < passes) jobs.emplace_back();

@@ -58,7 +58,8 @@ struct ExpectedFixError {
 /// What the receiver of a log is taken for.
 struct LogReceiver {
   double interval_s{};  ///< between fixes: the median
-  double sigma_h_m{};   ///< medians over the fixes, per axis, by the median of the navigator's scales
+  double
+      sigma_h_m{};  ///< medians over the fixes, per axis, by the median of the navigator's scales
   double sigma_v_m{};
   double sigma_h_mps{};
   double sigma_v_mps{};

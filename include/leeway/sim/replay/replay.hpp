@@ -105,7 +105,7 @@ struct ReplayObserver {
   std::function<void(Time)> progress{};  ///< now and then, with the time reached
   /// At the rate of the solution, with the truth of that time where there is one.
   std::function<void(const Solution&, const std::optional<TruthRecord>&)> epoch{};
-  std::function<void(const Health&)> health{};  ///< at the same rate
+  std::function<void(const Health&)> health{};      ///< at the same rate
   std::function<void(const UpdateOutcome&)> fix{};  ///< every fix that the filter judged
   std::function<void(Time, Verdict)> verdict{};     ///< all but what is accepted or aligned with
   std::function<void(const OutageEpoch&)> outage{};

@@ -165,14 +165,18 @@ function errorGrid(errors: readonly Errors[]): Grid {
 
 const numbers = (values: readonly (number | null)[]): number[] => values.map((v) => v ?? NaN);
 
-function bandSeries(label: string, colour: number, x: number[], bands: readonly Banded[]): Series {
-  return {
-    label, style: "band", colour, x, y: numbers(bands.map((b) => b.low)),
-    high: numbers(bands.map((b) => b.high)),
-  };
+/** Where there are bands; a short log has none. */
+function bandSeries(label: string, x: readonly number[], bands: readonly Banded[]): Series[] {
+  const there = x.flatMap((at, i) => (bands[i]?.low == null ? [] : [{ at, band: bands[i] }]));
+  if (there.length === 0) return [];
+  return [{
+    label, style: "band", colour: 6, x: there.map((t) => t.at),
+    y: numbers(there.map((t) => t.band.low)), high: numbers(there.map((t) => t.band.high)),
+  }];
 }
 
-function outageChart(outages: readonly Outages[]): Chart {
+function outageChart(all: readonly Outages[]): Chart {
+  const outages = all.filter((o) => o.outages > 0);
   const x = outages.map((o) => o.duration_s);
   const line = (label: string, colour: number, bands: readonly Banded[]): Series => ({
     label, style: "line", marked: true, colour, x, y: numbers(bands.map((b) => b.value)),
@@ -185,7 +189,7 @@ function outageChart(outages: readonly Outages[]): Chart {
     x: { label: "time since the last fix", unit: "s", log: true },
     y: { label: "horizontal error", unit: "m", log: true },
     series: [
-      bandSeries("90 % band of R95", 6, x, outages.map((o) => o.end_r95_m)),
+      ...bandSeries("90 % band of R95", x, outages.map((o) => o.end_r95_m)),
       line("R95", 1, outages.map((o) => o.end_r95_m)),
       line("R68", 2, outages.map((o) => o.end_r68_m)),
       line("R50", 0, outages.map((o) => o.end_r50_m)),
@@ -195,8 +199,9 @@ function outageChart(outages: readonly Outages[]): Chart {
 }
 
 function intervalChart(pooled: Answer, metric: string): Chart {
-  const x = pooled.errors.map((e) => e.interval_s);
-  const measured = pooled.errors.map((e) => e.measured_m);
+  const told = pooled.errors.filter((e) => e.measured_m.value !== null);
+  const x = told.map((e) => e.interval_s);
+  const measured = told.map((e) => e.measured_m);
   return {
     id: "error-over-interval",
     title: "Error against the time between fixes",
@@ -205,14 +210,14 @@ function intervalChart(pooled: Answer, metric: string): Chart {
     x: { label: "time between fixes", unit: "s", log: true },
     y: { label: `error (${metric})`, unit: "m", log: true },
     series: [
-      bandSeries("90 % band", 6, x, measured),
+      ...bandSeries("90 % band", x, measured),
       {
         label: "measured", style: "line", marked: true, colour: 0, x,
         y: numbers(measured.map((b) => b.value)),
       },
       {
         label: "predicted", style: "line", dashed: true, colour: 1, x,
-        y: numbers(pooled.errors.map((e) => e.predicted_m)),
+        y: numbers(told.map((e) => e.predicted_m)),
       },
     ],
     levels: pooled.intervals.map((i) => ({ at: i.limit_m, label: `limit ${short(i.limit_m)} m` })),
