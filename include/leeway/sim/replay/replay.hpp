@@ -97,7 +97,6 @@ struct ThinnedEpoch {
   double t_s{};
   Eigen::Vector3d error_n_m{Eigen::Vector3d::Zero()};
   double course_rad{};  ///< over ground
-  double sigma_h_m{};   ///< the branch's own sqrt(P_NN + P_EE)
 };
 
 /// Callbacks on the way; empty ones are not called.
