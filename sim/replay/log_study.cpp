@@ -104,11 +104,12 @@ void add_outages(const Outage& outage, const OutageCourse& course,
 class Study {
  public:
   Study(const ReplayInput& input, const NavigatorConfig& config, const LogStudyConfig& study,
-        const std::function<void(double)>& progress)
-      : input_(input), config_(config), study_(study), progress_(progress) {}
+        const std::function<void(const ReplayResult&)>& surveyed)
+      : input_(input), config_(config), study_(study), surveyed_(surveyed) {}
 
   LogStudy run() {
-    survey_ = survey_log(input_, config_, {});
+    survey_ = survey_log(input_, config_);
+    if (surveyed_) surveyed_(survey_.result);
     answer_.has_solution = survey_.result.has_solution;
     if (!answer_.has_solution || survey_.fixes_s.size() < 2) return answer_;
     span_ = span_of(survey_, study_);
@@ -130,11 +131,7 @@ class Study {
   void measure() {
     std::vector<BranchesOfJob> jobs = jobs_of_study();
     parallel_for(
-        jobs.size(), [&](std::size_t k) { run_job(jobs[k]); },
-        [&](std::size_t done) {
-          tell(kMeasuring * static_cast<double>(done) / static_cast<double>(jobs.size()));
-        },
-        study_.threads);
+        jobs.size(), [&](std::size_t k) { run_job(jobs[k]); }, {}, study_.threads);
     for (const BranchesOfJob& job : jobs) {
       for (std::size_t k = 0; k < job.outages.size(); ++k) {
         add_outages(job.outages[k], job.courses[k], study_.durations_s, span_.last_s,
@@ -215,19 +212,12 @@ class Study {
     } catch (const Error& error) {
       answer_.not_expected = error.what();
     }
-    tell(1.0);
   }
-
-  void tell(double fraction) const {
-    if (progress_) progress_(fraction);
-  }
-
-  static constexpr double kMeasuring = 0.9;  // of the time
 
   const ReplayInput& input_;
   const NavigatorConfig& config_;
   const LogStudyConfig& study_;
-  const std::function<void(double)>& progress_;
+  const std::function<void(const ReplayResult&)>& surveyed_;
   LogSurvey survey_{};
   StudySpan span_{};
   std::vector<Outage> outages_{};
@@ -253,9 +243,10 @@ void check(const ReplayInput& input, const LogStudyConfig& study) {
 }  // namespace
 
 LogStudy study_log(const ReplayInput& input, const NavigatorConfig& config,
-                   const LogStudyConfig& study, const std::function<void(double)>& progress) {
+                   const LogStudyConfig& study,
+                   const std::function<void(const ReplayResult&)>& surveyed) {
   check(input, study);
-  return Study(input, config, study, progress).run();
+  return Study(input, config, study, surveyed).run();
 }
 
 }  // namespace leeway::sim

@@ -48,8 +48,7 @@ void read_fixes(const ReplayInput& input, LogSurvey& survey) {
 
 }  // namespace
 
-LogSurvey survey_log(const ReplayInput& input, const NavigatorConfig& config,
-                     const std::function<void(Time)>& progress) {
+LogSurvey survey_log(const ReplayInput& input, const NavigatorConfig& config) {
   LogSurvey survey;
   read_fixes(input, survey);
   ReplayInput plain = input;
@@ -58,7 +57,6 @@ LogSurvey survey_log(const ReplayInput& input, const NavigatorConfig& config,
   plain.solution.clear();
   plain.solution_rate_hz = kSurveyRateHz;
   ReplayObserver observer;
-  observer.progress = progress;
   observer.epoch = [&](const Solution& s, const std::optional<TruthRecord>&) {
     survey.solution.push_back(s);
   };

@@ -19,9 +19,7 @@ struct LogSurvey {
   ReplayResult result{};
 };
 
-/// @param progress  called with the time reached
-LogSurvey survey_log(const ReplayInput& input, const NavigatorConfig& config,
-                     const std::function<void(Time)>& progress);
+LogSurvey survey_log(const ReplayInput& input, const NavigatorConfig& config);
 
 /// Speed in m/s at a time, of the last solution until then; 0 before the first.
 double speed_at(const LogSurvey& survey, double t_s);

@@ -2,6 +2,7 @@
 #include "sim/cli/commands/fuse_jobs.hpp"
 #include "sim/cli/limit_options.hpp"
 #include "sim/cli/on_ranks.hpp"
+#include "sim/cli/tables/fuse_tables.hpp"
 #include "sim/cli/tables/replay_tables.hpp"
 #include "sim/tools/shared_work.hpp"
 
@@ -48,7 +49,12 @@ std::vector<sim::LogStudy> studies_of(const std::vector<FuseJob>& jobs,
   const auto job = [&](std::size_t k) {
     NavigatorConfig own = config;
     if (jobs[k].estimates_mount) own.C_bs.reset();
-    return bytes_of(sim::study_log(jobs[k].input, own, of_rank));
+    const auto warn_of_log = [&](const sim::ReplayResult& surveyed) {
+      FuseJob surveyed_job = jobs[k];
+      surveyed_job.result = surveyed;
+      warn(surveyed_job);
+    };
+    return bytes_of(sim::study_log(jobs[k].input, own, of_rank, warn_of_log));
   };
   std::vector<sim::LogStudy> studies;
   for (const std::string& bytes : sim::shared_work(jobs.size(), job, ranks, std::ref(bar), 1)) {
@@ -61,7 +67,8 @@ ReplayAnswer answer_of(const std::vector<FuseJob>& jobs, std::vector<sim::LogStu
                        const sim::LogStudyConfig& study, const std::vector<double>& limits) {
   ReplayAnswer answer;
   for (std::size_t k = 0; k < jobs.size(); ++k) {
-    answer.logs.push_back({name_of(jobs[k]), std::move(studies[k])});
+    answer.logs.push_back(
+        {name_of(jobs[k]), jobs[k].input.imu, jobs[k].input.gnss, std::move(studies[k])});
   }
   std::vector<const sim::LogStudy*> all;
   for (NamedStudy& log : answer.logs) {
@@ -87,6 +94,7 @@ Json input_json(const ReplayCommand& command, const NamedImu& imu, const sim::Lo
           {"durations_s", study.durations_s},
           {"every_s", study.every_s},
           {"settle_s", study.settle_s},
+          {"most_phases", study.most_phases},
           {"min_speed_mps", study.min_speed_mps}};
 }
 

@@ -147,7 +147,10 @@ Json answer_json(const sim::StudyAnswer& answer) {
 Json log_json(const NamedStudy& log) {
   const sim::LogStudy& s = log.study;
   const sim::LogReceiver& r = s.receiver;
-  Json json{{"log", log.name}, {"has_solution", s.has_solution}};
+  Json json{{"log", log.name},
+            {"imu", log.imu.string()},
+            {"gnss", log.gnss.string()},
+            {"has_solution", s.has_solution}};
   if (!s.has_solution) return json;
   json.update({{"against", s.against == sim::Against::kReference ? "reference" : "gnss"},
                {"first_s", s.first_s},

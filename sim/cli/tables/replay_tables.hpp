@@ -7,9 +7,11 @@
 
 namespace leeway::cli {
 
-/// A log, or all of them together.
+/// A log, and what came of it.
 struct NamedStudy {
   std::string name{};
+  std::filesystem::path imu{};
+  std::filesystem::path gnss{};
   sim::LogStudy study{};
   sim::StudyAnswer answer{};
 };

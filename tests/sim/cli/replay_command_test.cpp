@@ -90,6 +90,7 @@ TEST_CASE("replay: exit code 2 where a log has no solution, 1 where nothing can 
   const Outcome none = leeway(logs + quoted(dir / "gnss.csv"));
   CHECK(none.exit_code == 2);
   CHECK(contains(none.out, "no solution"));
+  CHECK(contains(none.err, "no solution: "));  // and why
   const Outcome grows = leeway(logs + quoted(simulated().gnss) + " --limit 5m+5%");
   CHECK(grows.exit_code == 1);
   CHECK(contains(grows.err, "limits that do not grow with the way: give metres alone"));

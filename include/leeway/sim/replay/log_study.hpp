@@ -84,10 +84,11 @@ struct LogStudy {
 /// The study of one log: a pass with all fixes, then passes with kMostBranches or fewer branches
 /// each, several at a time. Constant memory but for the answer and the smoothed motion.
 /// @param input  outages, thinnings and solution are not used
-/// @param progress  called with the fraction done
+/// @param surveyed  called with the result of the first pass
 /// @throws Error as replay(), or when a log is no file: it is read several times.
 LogStudy study_log(const ReplayInput& input, const NavigatorConfig& config,
-                   const LogStudyConfig& study, const std::function<void(double)>& progress = {});
+                   const LogStudyConfig& study,
+                   const std::function<void(const ReplayResult&)>& surveyed = {});
 
 /// A study as bytes, for another rank of the same run, and back.
 std::string bytes_of(const LogStudy& study);
