@@ -39,6 +39,20 @@ std::string name_of(const FuseJob& job) {
   return job.drive.empty() ? job.input.imu.filename().string() : job.drive;
 }
 
+/// The logs by their size, the largest first, so that no rank gets all that take long.
+std::vector<std::size_t> largest_first(const std::vector<FuseJob>& jobs) {
+  std::vector<std::pair<std::uintmax_t, std::size_t>> sizes;
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    std::error_code unknown;
+    sizes.emplace_back(std::filesystem::file_size(jobs[k].input.imu, unknown), k);
+  }
+  std::stable_sort(sizes.begin(), sizes.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::size_t> order;
+  for (const auto& [size, k] : sizes) order.push_back(k);
+  return order;
+}
+
 /// Every log on one of the ranks, which gives it all its threads.
 std::vector<sim::LogStudy> studies_of(const std::vector<FuseJob>& jobs,
                                       const NavigatorConfig& config,
@@ -46,7 +60,9 @@ std::vector<sim::LogStudy> studies_of(const std::vector<FuseJob>& jobs,
   Progress bar("replay");
   sim::LogStudyConfig of_rank = study;
   of_rank.threads = sim::threads_of_rank(study.threads, ranks);
-  const auto job = [&](std::size_t k) {
+  const std::vector<std::size_t> order = largest_first(jobs);
+  const auto job = [&](std::size_t place) {
+    const std::size_t k = order[place];
     NavigatorConfig own = config;
     if (jobs[k].estimates_mount) own.C_bs.reset();
     const auto warn_of_log = [&](const sim::ReplayResult& surveyed) {
@@ -56,9 +72,10 @@ std::vector<sim::LogStudy> studies_of(const std::vector<FuseJob>& jobs,
     };
     return bytes_of(sim::study_log(jobs[k].input, own, of_rank, warn_of_log));
   };
-  std::vector<sim::LogStudy> studies;
-  for (const std::string& bytes : sim::shared_work(jobs.size(), job, ranks, std::ref(bar), 1)) {
-    studies.push_back(sim::log_study_of(bytes));
+  std::vector<sim::LogStudy> studies(jobs.size());
+  const auto found = sim::shared_work(jobs.size(), job, ranks, std::ref(bar), 1);
+  for (std::size_t place = 0; place < found.size(); ++place) {
+    studies[order[place]] = sim::log_study_of(found[place]);
   }
   return studies;
 }
