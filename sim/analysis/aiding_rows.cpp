@@ -17,7 +17,8 @@ constexpr double kEndSlack = 1e-6;  // of a step
 
 }  // namespace
 
-SceneAiding::SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples> motion)
+SceneAiding::SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples> motion,
+                         const RestsAt& rests_at)
     : motion_(std::move(motion)),
       ends_(motion_->ends(scene.trajectory, scene.duration_s)),
       step_s_(motion_->step_s()) {
@@ -34,8 +35,9 @@ SceneAiding::SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples
     if (!is_still) still_s = 0.0;
     even_s = is_even ? even_s + step_s_ : 0.0;
     v_e_mps = truth.nav.v_e_mps;
-    samples_.push_back({still_s >= kToRestS, static_cast<float>(even_s),
-                        static_cast<std::uint32_t>(rows_.size())});
+    const bool rests = rests_at ? rests_at(static_cast<double>(k) * step_s_) : still_s >= kToRestS;
+    samples_.push_back(
+        {rests, static_cast<float>(even_s), static_cast<std::uint32_t>(rows_.size())});
     if (k > 0 && scene.vehicle) add_rows(scene, truth);
   }
 }

@@ -11,6 +11,7 @@
 #include "leeway/ekf/update_outcome.hpp"
 #include "leeway/model/measurement.hpp"
 #include "leeway/model/vehicle_state.hpp"
+#include "leeway/sim/analysis/scene_tracks.hpp"
 #include "leeway/sim/scene/scene.hpp"
 #include "sim/analysis/fix_rows.hpp"
 #include "sim/analysis/motion_samples.hpp"
@@ -30,7 +31,8 @@ struct AidingRow {
 /// at its end, with the noise of their mean.
 class SceneAiding {
  public:
-  SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples> motion);
+  SceneAiding(const Scene& scene, std::shared_ptr<const MotionSamples> motion,
+              const RestsAt& rests_at = {});
 
   bool has_rows() const { return !rows_.empty(); }
 

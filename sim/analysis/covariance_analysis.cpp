@@ -126,6 +126,12 @@ class Analysis {
             pair.truth()};
   }
 
+  void tell(const SceneCovariance<kParameters>& pair, CovariancePoint before) const {
+    if (!config_.observer) return;
+    before.innovation_n_m2 = pair.innovation_n_m2(ned_to_ecef(geodetic_from_ecef(before.r_e_m)));
+    config_.observer(before);
+  }
+
   /// The fix of now, or as many as one that stands for them ends with.
   void take_fix(double arrival_s) {
     const int fixes = fixes_in_one_;
@@ -178,7 +184,7 @@ class Analysis {
 
   void score(const SceneCovariance<kParameters>& pair, const CovariancePoint& before,
              double last_fix_s) {
-    if (config_.observer) config_.observer(before);
+    tell(pair, before);
     if (!counts(before.t_s)) return;
     const bool is_worst = scored_.add(before, std::max(last_fix_s, 0.0));
     if (!is_worst || !config_.by_source) return;

@@ -158,6 +158,14 @@ class SceneCovariance {
     return rest_hides_heading(scene_->filter.imu, aiding_->truth(t_s), claim_.errors());
   }
 
+  /// As CovariancePoint has it.
+  Eigen::Matrix3d innovation_n_m2(const Eigen::Matrix3d& C_en) const {
+    if (truth_) return truth_->innovation_n_m2(C_en);
+    Eigen::Matrix3d moment = C_en.transpose() * claimed().template block<3, 3>(kDr, kDr) * C_en;
+    moment.diagonal() += fix_variance(scene_->gnss.errors).template head<3>();
+    return moment;
+  }
+
   /// @pre made by source.
   ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const { return truth_->error_budget(C_en); }
 

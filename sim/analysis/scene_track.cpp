@@ -23,7 +23,7 @@ double step_limit_s(const ImuErrorModel& imu) {
 
 }  // namespace
 
-ErrorTrack SceneTracks::of(const Scene& scene, double step_s) {
+ErrorTrack SceneTracks::of(const Scene& scene, double step_s, const RestsAt& rests_at) {
   const ProcessNoise noise = process_noise(scene.filter.imu, scene.filter.biases);
   const ErrorTrackConfig config{std::min(step_s, step_limit_s(scene.imu)),
                                 !parameter_moments(scene.imu).empty(), noise.tau_a_s,
@@ -34,7 +34,7 @@ ErrorTrack SceneTracks::of(const Scene& scene, double step_s) {
   }
   ErrorTrack track(motion, config);
   if (scene.vehicle || scene.estimator == SceneEstimator::kNavigator) {
-    track.set_aiding(std::make_shared<SceneAiding>(scene, motion));
+    track.set_aiding(std::make_shared<SceneAiding>(scene, motion, rests_at));
   }
   return track;
 }

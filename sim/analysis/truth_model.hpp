@@ -113,6 +113,20 @@ class TruthModel {
     return sum + parameters_.covariance(all_moments_);
   }
 
+  /// E[z z^T] of the position innovation, as CovariancePoint has it, of the first filter.
+  Eigen::Matrix3d innovation_n_m2(const Eigen::Matrix3d& C_en) const {
+    Eigen::Matrix3d moment = C_en.transpose() * covariance().template block<3, 3>(kDr, kDr) * C_en;
+    for (const auto& [name, source] : sources_) {
+      moment.diagonal() += source.row_variance.template head<3>();
+      for (const auto& process : source.processes()) {
+        if (process.enters_at >= 0) continue;  // not by the fixes
+        const Eigen::Matrix3d cross = C_en.transpose() * process.S.template middleRows<3>(kDr);
+        moment += cross + cross.transpose() + process.G;
+      }
+    }
+    return moment;
+  }
+
   /// Of the first filter.
   ErrorBudget error_budget(const Eigen::Matrix3d& C_en) const {
     ErrorBudget error_budget;

@@ -29,7 +29,7 @@ void ThinnedMedian::add(double value) {
 }
 
 double ThinnedMedian::median() const {
-  if (values_.empty()) return kUnknown;
+  if (values_.empty()) return kUnseen;
   std::vector<double> sorted = values_;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());

@@ -31,7 +31,7 @@ class SpeedRatio {
     ++count_;
   }
 
-  double ratio() const { return count_ < kFewSpeeds ? kUnknown : across_ / square_; }
+  double ratio() const { return count_ < kFewSpeeds ? kUnseen : across_ / square_; }
 
  private:
   std::optional<OdometerSpeed> last_{};
@@ -80,7 +80,7 @@ void LogInspector::add(const OdometerSpeed& speed) { parts_->odometer.add(speed)
 LogLook LogInspector::look() const {
   LogLook look;
   look.imu = parts_->imu.figures();
-  look.imu.forward_b = parts_->turns.forward_b().value_or(Eigen::Vector3d::Constant(kUnknown));
+  look.imu.forward_b = parts_->turns.forward_b().value_or(Eigen::Vector3d::Constant(kUnseen));
   look.gnss = parts_->gnss.figures();
   const TurnMatch turns = parts_->turns.match();
   look.shared.turn_correlation = turns.correlation;

@@ -19,12 +19,12 @@ namespace leeway::sim {
 /// What the turns say.
 struct TurnMatch {
   std::int64_t pairs{0};
-  double offset_s{kUnknown};  ///< the course of a time t fits the gyros at t + offset
-  double offset_sigma_s{kUnknown};
-  double ratio{kUnknown};  ///< turn of the course over that of the gyros, at that offset
-  double ratio_sigma{kUnknown};
+  double offset_s{kUnseen};  ///< the course of a time t fits the gyros at t + offset
+  double offset_sigma_s{kUnseen};
+  double ratio{kUnseen};  ///< turn of the course over that of the gyros, at that offset
+  double ratio_sigma{kUnseen};
   double correlation{0.0};  ///< at that offset, signed
-  double lead_m{kUnknown};  ///< antenna ahead of the point that does not slide sideways
+  double lead_m{kUnseen};  ///< antenna ahead of the point that does not slide sideways
 };
 
 /// The two logs side by side, an increment and a fix after the other.

@@ -62,6 +62,13 @@ void check_row(const Recording& recording, const TruthRecord& record, std::int64
   }
 }
 
+void add(Recording& recording, const TruthRecord& record, std::int64_t line, double max_gap_s) {
+  if (recording.rows.empty()) recording.has_attitude = record.has_attitude;
+  recording.rows.push_back(record.nav);
+  recording.t_s.push_back(to_seconds(record.nav.time - recording.rows.front().time));
+  check_row(recording, record, line, max_gap_s);
+}
+
 Recording read(const RecordedParameters& p) {
   if (!std::filesystem::is_regular_file(p.file)) {
     throw Error(p.file.string() + ": is no file to read a trajectory from");
@@ -69,19 +76,16 @@ Recording read(const RecordedParameters& p) {
   Recording recording;
   recording.file = p.file.string();
   TruthLogReader reader(p.file);
-  std::optional<Time> start;
   while (const auto record = reader.next()) {
-    if (!start) {
-      start = record->nav.time;
-      recording.has_attitude = record->has_attitude;
-    }
-    recording.t_s.push_back(to_seconds(record->nav.time - *start));
-    recording.rows.push_back(record->nav);
-    check_row(recording, *record, reader.summary().lines, p.max_gap_s);
+    add(recording, *record, reader.summary().lines, p.max_gap_s);
   }
   const LogSummary& summary = reader.summary();
   if (!summary.messages.empty()) throw Error(summary.messages.front());
   if (!summary.incomplete.empty()) recording.refuse(summary.incomplete);
+  return recording;
+}
+
+void check_length(const Recording& recording, const RecordedParameters& p) {
   if (recording.rows.size() < kFewestRows) {
     recording.refuse(fmt::format("{} rows are too few: at least {} make a trajectory",
                                  recording.rows.size(), kFewestRows));
@@ -91,7 +95,6 @@ Recording read(const RecordedParameters& p) {
     recording.refuse(fmt::format("{:.9g} s of log do not go with smoothing_s = {:.9g}", duration_s,
                                  p.smoothing_s));
   }
-  return recording;
 }
 
 Samples positions(const Recording& recording, const TangentPlane& plane) {
@@ -180,13 +183,14 @@ Samples angles(const Recording& recording, const TangentPlane& plane,
   return samples;
 }
 
-}  // namespace
-
-Trajectory recorded_trajectory(const RecordedParameters& p) {
+void check(const RecordedParameters& p) {
   require("recorded trajectory", "smoothing_s", p.smoothing_s, between(0.01, 100.0));
   require("recorded trajectory", "max_gap_s", p.max_gap_s, between(0.01, 1e4));
   require("recorded trajectory", "min_speed_mps", p.min_speed_mps, between(0.01, 100.0));
-  const Recording recording = read(p);
+}
+
+Trajectory smoothed(const Recording& recording, const RecordedParameters& p) {
+  check_length(recording, p);
   Trajectory trajectory;
   trajectory.name = p.file.filename().string();
   trajectory.plane = TangentPlane(recording.rows.front().position);
@@ -204,6 +208,24 @@ Trajectory recorded_trajectory(const RecordedParameters& p) {
                        attitude->at(t_s, 0), attitude->at(t_s, 1), attitude->at(t_s, 2)};
   };
   return trajectory;
+}
+
+}  // namespace
+
+Trajectory recorded_trajectory(const RecordedParameters& p) {
+  check(p);
+  return smoothed(read(p), p);
+}
+
+Trajectory recorded_trajectory(const std::vector<NavStateNed>& rows, const RecordedParameters& p) {
+  check(p);
+  Recording recording;
+  recording.file = p.file.string();
+  for (const NavStateNed& row : rows) {
+    add(recording, {row, true, true}, static_cast<std::int64_t>(recording.rows.size()) + 1,
+        p.max_gap_s);
+  }
+  return smoothed(recording, p);
 }
 
 }  // namespace leeway::sim

@@ -14,9 +14,8 @@ Time clamped(double t_s) { return time_from_seconds(std::clamp(t_s, -9e9, 9e9));
 
 }  // namespace
 
-Miss miss(const Eigen::Vector3d& a_e_m, const Eigen::Vector3d& b_e_m) {
-  const Eigen::Vector3d d_n = ned_to_ecef(geodetic_from_ecef(b_e_m)).transpose() * (a_e_m - b_e_m);
-  return {d_n.head<2>().norm(), std::abs(d_n.z())};
+Eigen::Vector3d difference_n_m(const Eigen::Vector3d& a_e_m, const Eigen::Vector3d& b_e_m) {
+  return ned_to_ecef(geodetic_from_ecef(b_e_m)).transpose() * (a_e_m - b_e_m);
 }
 
 Reference::Reference(const ReplayInput& input)
@@ -31,10 +30,10 @@ std::optional<TruthRecord> Reference::at(Time t) {
 
 void RmsSum::add(const NavState& nav, const TruthRecord& truth) {
   const NavState true_nav = nav_state_from_ned(truth.nav);
-  const Miss m = miss(nav.r_e_m, true_nav.r_e_m);
+  const Eigen::Vector3d error_n_m = difference_n_m(nav.r_e_m, true_nav.r_e_m);
   ++epochs_;
-  horizontal_ += m.horizontal_m * m.horizontal_m;
-  vertical_ += m.vertical_m * m.vertical_m;
+  horizontal_ += error_n_m.head<2>().squaredNorm();
+  vertical_ += error_n_m.z() * error_n_m.z();
   if (truth.has_velocity) {
     velocity_ += (nav.v_e_mps - true_nav.v_e_mps).squaredNorm();
     ++velocity_epochs_;

@@ -12,13 +12,8 @@
 
 namespace leeway::sim {
 
-/// Horizontal and vertical distance of two points a short way apart.
-struct Miss {
-  double horizontal_m;
-  double vertical_m;
-};
-
-Miss miss(const Eigen::Vector3d& a_e_m, const Eigen::Vector3d& b_e_m);
+/// The way from b to a, a short one, along north, east, down at b.
+Eigen::Vector3d difference_n_m(const Eigen::Vector3d& a_e_m, const Eigen::Vector3d& b_e_m);
 
 /// The truth log within its window of use.
 class Reference {

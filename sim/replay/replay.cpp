@@ -1,12 +1,16 @@
 #include "leeway/sim/replay/replay.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
+#include <list>
 
+#include "leeway/earth/error.hpp"
 #include "leeway/logs/solution_writer.hpp"
 #include "leeway/sim/inspect/log_inspector.hpp"
 #include "lib/earth/field_walk.hpp"
-#include "sim/replay/outage_branch.hpp"
+#include "sim/replay/branch.hpp"
 #include "sim/replay/reference.hpp"
 
 namespace leeway::sim {
@@ -81,8 +85,11 @@ class Looks {
 /// The pass over the logs.
 class Replay {
  public:
-  Replay(const ReplayInput& input, const NavigatorConfig& config, const ReplayObserver& observer)
+  /// @param plans  of the branches of this pass, in the order of their starts
+  Replay(const ReplayInput& input, const NavigatorConfig& config, const ReplayObserver& observer,
+         const std::vector<BranchPlan>& plans)
       : observer_(observer),
+        plans_(plans),
         imu_(input.imu, input.imu_options),
         gnss_(input.gnss, input.gnss_options),
         navigator_(config),
@@ -92,9 +99,7 @@ class Replay {
     if (!input.truth.empty()) reference_.emplace(input);
     if (!input.solution.empty()) writer_.emplace(input.solution);
     if (input.start) navigator_.start(input.start->estimate, input.start->P);
-    for (const Outage& outage : input.outages) {
-      branches_.emplace_back(branches_.size(), outage, observer_);
-    }
+    for (const Outage& outage : input.outages) result_.outages.push_back({outage});
     for (std::size_t a = 0; a < kAidings.size(); ++a) {
       aidings_.emplace_back(kAidings[a], input.aidings[a]);
     }
@@ -131,9 +136,7 @@ class Replay {
   void push_fixes(Time t) {
     for (; next_fix_ && next_fix_->time <= t; next_fix_ = gnss_.next()) {
       begin_branches(next_fix_->time - Duration{1});
-      for (OutageBranch& branch : branches_) {
-        if (branch.withholds(next_fix_->time)) branch.withhold(*next_fix_);
-      }
+      for (Branch& branch : branches_) branch.push(*next_fix_);
       navigator_.push(*next_fix_);
       looks_.add(*next_fix_);
       if (imu_started_) ++result_.fixes_in_span;
@@ -141,9 +144,7 @@ class Replay {
     imu_started_ = true;
     begin_branches(t);
     const auto push_to_all = [this](const Reading& reading) {
-      for (OutageBranch& branch : branches_) {
-        if (branch.is_running()) branch.push(reading);
-      }
+      for (Branch& branch : branches_) branch.push(reading);
       navigator_.push(reading);
       looks_.add(reading);
     };
@@ -151,15 +152,29 @@ class Replay {
   }
 
   void begin_branches(Time t) {
-    for (OutageBranch& branch : branches_) {
-      if (!branch.over() && branch.start() <= t) branch.begin(navigator_);
+    for (; begun_ < plans_.size() && plans_[begun_].start <= t; ++begun_) {
+      branches_.emplace_back(plans_[begun_], navigator_, observer_);
     }
   }
 
+  void end_branches() {
+    branches_.remove_if([this](const Branch& branch) {
+      if (branch.over()) keep(branch);
+      return branch.over();
+    });
+  }
+
+  void keep(const Branch& branch) {
+    if (branch.plan().interval) return;
+    OutageResult& result = result_.outages[branch.plan().index];
+    const Outage outage = result.outage;
+    result = branch.result();
+    result.outage = outage;
+  }
+
   void push(const ImuIncrement& inc) {
-    for (OutageBranch& branch : branches_) {
-      if (!branch.over() && branch.start() <= inc.time) branch.push(inc, reference());
-    }
+    for (Branch& branch : branches_) branch.push(inc, reference());
+    end_branches();
     const Time judged = navigator_.last_update().time;
     navigator_.push(inc);
     if (!navigator_.aligned()) return;
@@ -191,13 +206,18 @@ class Replay {
   }
 
   void output(Time t) {
-    if (!result_.has_solution) result_.first_solution_s = to_seconds(t);
-    result_.has_solution = true;
-    result_.last_solution_s = to_seconds(t);
     next_output_ = Time{(t.time_since_epoch() / output_interval_ + 1) * output_interval_};
     const Estimate& estimate = navigator_.filter().estimate();
-    const std::optional<TruthRecord> truth = reference_ ? reference_->at(t) : std::nullopt;
+    // After a long hole in the data the solution is that of before it.
+    const Time at = estimate.nav.time;
+    if (result_.has_solution && at <= last_output_) return;
+    last_output_ = at;
+    if (!result_.has_solution) result_.first_solution_s = to_seconds(at);
+    result_.has_solution = true;
+    result_.last_solution_s = to_seconds(at);
+    const std::optional<TruthRecord> truth = reference_ ? reference_->at(at) : std::nullopt;
     if (truth) rms_.add(estimate.nav, *truth);
+    if (observer_.health) observer_.health(navigator_.health());
     if (!writer_ && !observer_.epoch) return;
     Solution s = navigator_.solution();
     if (latest_dof_ > 0) {
@@ -215,7 +235,7 @@ class Replay {
     result_.is_refused = looks_.refuses(result_.look);
     if (result_.is_refused) result_.has_solution = false;
     if (writer_ && !result_.is_refused) writer_->close();
-    for (const OutageBranch& branch : branches_) result_.outages.push_back(branch.result());
+    for (const Branch& branch : branches_) keep(branch);
     result_.rms = rms_.rms();
     for (std::size_t v = 0; v < kVerdicts; ++v) {
       result_.verdicts[v] = navigator_.count(static_cast<Verdict>(v));
@@ -245,6 +265,8 @@ class Replay {
   }
 
   const ReplayObserver& observer_;
+  const std::vector<BranchPlan>& plans_;
+  std::size_t begun_{0};
   ImuLogReader imu_;
   GnssLogReader gnss_;
   std::vector<Readings> aidings_{};
@@ -254,10 +276,11 @@ class Replay {
   Looks looks_;
   std::optional<Reference> reference_{};
   std::optional<SolutionWriter> writer_{};
-  std::vector<OutageBranch> branches_{};
+  std::list<Branch> branches_{};
   std::optional<GnssFix> next_fix_{};
   bool imu_started_{false};
   Time next_output_{Time::min()};
+  Time last_output_{Time::min()};
   double latest_nis_{0.0};
   int latest_dof_{0};
   std::array<std::uint64_t, kVerdicts> told_{};
@@ -265,6 +288,46 @@ class Replay {
   RmsSum rms_{};
   ReplayResult result_{};
 };
+
+std::vector<BranchPlan> plans_of(const ReplayInput& input) {
+  std::vector<BranchPlan> plans;
+  for (std::size_t k = 0; k < input.outages.size(); ++k) {
+    plans.push_back(BranchPlan::of(k, input.outages[k]));
+  }
+  for (std::size_t k = 0; k < input.thinnings.size(); ++k) {
+    plans.push_back(BranchPlan::of(k, input.thinnings[k]));
+  }
+  return plans;
+}
+
+void require_files(const ReplayInput& input, std::size_t passes) {
+  const auto require_file = [&](const std::filesystem::path& path) {
+    if (path.empty() || std::filesystem::is_regular_file(path)) return;
+    throw Error(
+        fmt::format("{}: is no file, and so many outages overlap that the logs have to be "
+                    "read {} times: put the log into a file, or ask for fewer at once",
+                    path.string(), passes));
+  };
+  for (const auto& path : {input.imu, input.gnss, input.truth}) require_file(path);
+  for (const auto& path : input.aidings) require_file(path);
+}
+
+/// The passes after the first: nothing but their branches is wanted of them.
+void replay_further(ReplayInput input, const NavigatorConfig& config,
+                    const ReplayObserver& observer,
+                    const std::vector<std::vector<BranchPlan>>& passes, ReplayResult& result) {
+  require_files(input, passes.size());
+  input.solution.clear();
+  ReplayObserver of_branches;
+  of_branches.outage = observer.outage;
+  of_branches.thinned = observer.thinned;
+  for (std::size_t k = 1; k < passes.size(); ++k) {
+    const ReplayResult further = Replay(input, config, of_branches, passes[k]).run();
+    for (const BranchPlan& plan : passes[k]) {
+      if (!plan.interval) result.outages[plan.index] = further.outages[plan.index];
+    }
+  }
+}
 
 }  // namespace
 
@@ -275,7 +338,11 @@ ScalarColumns columns_of(const Aiding& aiding) {
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const ReplayObserver& observer) {
   require("replay", "solution_rate_hz", input.solution_rate_hz, positive_to(1e4));
-  return Replay(input, config, observer).run();
+  const auto passes = passes_of(plans_of(input), kMostBranches);
+  ReplayResult result = Replay(input, config, observer, passes.front()).run();
+  if (passes.size() > 1 && !result.is_refused)
+    replay_further(input, config, observer, passes, result);
+  return result;
 }
 
 }  // namespace leeway::sim

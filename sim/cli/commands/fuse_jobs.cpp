@@ -101,7 +101,8 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
         meta_path.string() + ": " + std::string(what.substr(what.find("] ") + 2)) +
         R"(; wanted: {"mount_rpy_deg": [r, p, y], "reference_window_s": [from, to] or null})");
   }
-  job.input.outages = sim::read_outages(folder / "outages.json");
+  const std::filesystem::path outages = folder / "outages.json";
+  if (std::filesystem::exists(outages)) job.input.outages = sim::read_outages(outages);
   return job;
 }
 
@@ -117,6 +118,19 @@ void find_time_offset(FuseJob& job) {
   in.gnss_options.time_offset += duration_from_seconds(found->offset_s);
   note(fmt::format("{}: times of fixes are put {:+.3f} s later (sigma {:.3f} s), by the turns",
                    in.gnss.string(), found->offset_s, found->sigma_s));
+}
+
+/// The folder, or those in it that are drives.
+std::vector<std::filesystem::path> drives_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> drives;
+  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(folder / "meta.json")) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (std::filesystem::exists(entry.path() / "meta.json")) drives.push_back(entry.path());
+    }
+    std::sort(drives.begin(), drives.end());
+  }
+  if (drives.empty()) drives.push_back(folder);
+  return drives;
 }
 
 bool is_without(const FuseVehicle& vehicle, const VehiclePart& part) {
@@ -176,11 +190,13 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
     throw Error(asked + " is used with --vehicle car");
   }
   if (logs.drives.empty() && (logs.files.imu.empty() || logs.files.gnss.empty())) {
-    throw Error("fuse needs --imu and --gnss, or --drive");
+    throw Error("wanted: --imu and --gnss, or --drive");
   }
   std::vector<FuseJob> jobs;
   if (logs.drives.empty()) jobs.push_back(job_of_logs(logs));
-  for (const auto& folder : logs.drives) jobs.push_back(job_of_drive(logs, folder));
+  for (const auto& folder : logs.drives) {
+    for (const auto& drive : drives_in(folder)) jobs.push_back(job_of_drive(logs, drive));
+  }
   for (FuseJob& job : jobs) {
     const FuseVehicle& vehicle = options.vehicle;
     job.estimates_mount =

@@ -53,6 +53,9 @@ struct FuseJob {
   sim::ReplayResult result{};
 };
 
+/// The options of logs, of the navigator and of the vehicle: all that says how a log is run.
+void add_log_options(CLI::App& app, FuseOptions& options);
+
 /// @throws Error when the IMU model cannot be read or a number is out of range.
 NavigatorConfig navigator_config(const FuseOptions& options, const ImuErrorModel& imu);
 

@@ -12,39 +12,19 @@
 #include "leeway/sim/motion/trajectories.hpp"
 #include "leeway/sim/sensors/gnss_simulator.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
+#include "tests/sim/replay/recorded_logs.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temp_dir.hpp"
 
 namespace leeway::sim {
 namespace {
 
-constexpr double kImuRateHz = 50.0;
-
 /// The logs of a drive on the square loop with perfect sensors, or with those of a model.
 ReplayInput record(const test::TempDir& dir, double duration_s, const ImuErrorModel& model = {},
                    const GnssErrorModel& gnss_model = {}) {
   SquareLoopParameters parameters;
   parameters.duration_s = duration_s;
-  const Trajectory trajectory = square_loop(parameters);
-  ImuErrorSimulator sensor(model, Random(1, 0, kImuStream));
-  GnssSimulator receiver(trajectory, gnss_model, Random(1, 0, kGnssStream));
-  ReplayInput input;
-  input.imu = dir / "imu.csv";
-  input.gnss = dir / "gnss.csv";
-  input.truth = dir / "truth.csv";
-  ImuLogWriter imu(input.imu);
-  GnssLogWriter gnss(input.gnss);
-  TruthLogWriter truth(input.truth);
-  for (const ImuIncrement& inc : true_increments(trajectory, kImuRateHz, duration_s)) {
-    imu.write(sensor.measure(inc));
-    const double t_s = to_seconds(inc.time);
-    truth.write({ned_from_nav_state(truth_at(trajectory, t_s).nav), true, true});
-    if (std::abs(t_s - std::round(t_s)) < 1e-6) gnss.write(receiver.fix_at(t_s));
-  }
-  imu.close();
-  gnss.close();
-  truth.close();
-  return input;
+  return record_logs(dir, square_loop(parameters), duration_s, model, gnss_model);
 }
 
 NavigatorConfig white_gnss(const ImuErrorModel& imu) {
@@ -162,7 +142,7 @@ TEST_CASE("an outage's error equals that of a log in which the fixes are missing
   input.gnss = dir / "cut.csv";
   input.outages = {};
   input.solution = dir / "solution.csv";
-  input.solution_rate_hz = kImuRateHz;
+  input.solution_rate_hz = kRecordedImuHz;
   replay(input, white_gnss(imu));
   // The solution's file is read back as a truth log, by its columns.
   TruthTrack solution{TruthLogReader(input.solution)};

@@ -49,6 +49,10 @@ export function makeReports(program: string, scenes: string, work: string): Made
       ...simulatedDrive(leeway, work),
     ),
     made(
+      "replay", ["error-since-fix", "error-over-interval"],
+      ...simulatedDrive(leeway, work).slice(0, -2), "--phases", "1",
+    ),
+    made(
       "compare", ["cost-against-error"],
       "--scene", loop, "--interval-s", "10", "--at", "120", "--trials", "2", "--repeat", "1",
     ),

@@ -80,6 +80,9 @@ struct CovariancePoint {
   Eigen::Vector3d r_e_m{Eigen::Vector3d::Zero()};  ///< of the truth
   ErrorMatrix claimed{ErrorMatrix::Zero()};        ///< the filter's covariance
   ErrorMatrix truth{ErrorMatrix::Zero()};          ///< E[x x^T] of its error
+  /// E[z z^T] of the position innovation along north, east, down: how far the estimate is from a
+  /// fix of this moment, which repeats the errors of those before it. Before a fix only.
+  Eigen::Matrix3d innovation_n_m2{Eigen::Matrix3d::Zero()};
 };
 
 /// Options of a covariance analysis.

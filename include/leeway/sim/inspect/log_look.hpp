@@ -26,15 +26,15 @@ struct Finding {
   std::string remedy{};  ///< the option that mends it; empty: there is none
 };
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
 
 /// Figures of the times of a log.
 struct TimeFigures {
   std::int64_t records{0};
-  double first_s{kUnknown};
-  double last_s{kUnknown};
-  double step_s{kUnknown};    ///< the usual time between two records, the median of the first 1000
-  double jitter_s{kUnknown};  ///< root mean square of the steps about it, gaps and bursts aside
+  double first_s{kUnseen};
+  double last_s{kUnseen};
+  double step_s{kUnseen};    ///< the usual time between two records, the median of the first 1000
+  double jitter_s{kUnseen};  ///< root mean square of the steps about it, gaps and bursts aside
   std::int64_t gaps{0};       ///< steps above 1.5 of it
   double longest_gap_s{0.0};
   std::int64_t bursts{0};    ///< steps below half of it
@@ -44,12 +44,12 @@ struct TimeFigures {
 /// Figures of an IMU log, in the axes of the increments.
 struct ImuFigures {
   TimeFigures time{};
-  double specific_force_mps2{kUnknown};  ///< median of the magnitudes of means over a second
-  Eigen::Vector3d up_b{Eigen::Vector3d::Constant(kUnknown)};  ///< unit vector, the mean one
+  double specific_force_mps2{kUnseen};  ///< median of the magnitudes of means over a second
+  Eigen::Vector3d up_b{Eigen::Vector3d::Constant(kUnseen)};  ///< unit vector, the mean one
   /// Magnitude of the mean specific force over the mean magnitude: 1 where its direction stays.
-  double steadiness{kUnknown};
+  double steadiness{kUnseen};
   /// Unit vector: where the log gains speed. NaN without speed changes to see it by.
-  Eigen::Vector3d forward_b{Eigen::Vector3d::Constant(kUnknown)};
+  Eigen::Vector3d forward_b{Eigen::Vector3d::Constant(kUnseen)};
   /// Channels x, y, z of the gyros, then of the accelerometers, that never change.
   std::array<bool, 6> is_stuck{};
   /// Samples at the largest magnitude of their sensor, where it is one of a full scale.
@@ -62,23 +62,23 @@ struct FixFigures {
   std::int64_t with_velocity{0};
   std::int64_t repeated{0};         ///< that repeat the one before to the bit
   std::int64_t zeros{0};            ///< at 0 deg, 0 deg
-  double claimed_h_m{kUnknown};     ///< mean standard deviation of an axis, horizontal
-  double scatter_h_m{kUnknown};     ///< of an axis, from one fix to the next, motion taken out
-  double wander_h_m{kUnknown};      ///< the same over ten seconds
-  double velocity_lag_s{kUnknown};  ///< how late velocities are against positions
-  double velocity_lag_sigma_s{kUnknown};
+  double claimed_h_m{kUnseen};     ///< mean standard deviation of an axis, horizontal
+  double scatter_h_m{kUnseen};     ///< of an axis, from one fix to the next, motion taken out
+  double wander_h_m{kUnseen};      ///< the same over ten seconds
+  double velocity_lag_s{kUnseen};  ///< how late velocities are against positions
+  double velocity_lag_sigma_s{kUnseen};
   double velocity_lag_share{0.0};  ///< of what positions and velocities differ by that it explains
 };
 
 /// Figures of turns and speeds that two logs share.
 struct SharedFigures {
-  double clock_offset_s{kUnknown};  ///< to be added to GNSS times
-  double clock_offset_sigma_s{kUnknown};
+  double clock_offset_s{kUnseen};  ///< to be added to GNSS times
+  double clock_offset_sigma_s{kUnseen};
   double turn_correlation{0.0};  ///< at that offset, signed
-  double turn_ratio{kUnknown};   ///< turn of the course over that of the gyros, about down
-  double turn_ratio_sigma{kUnknown};
-  double antenna_lead_m{kUnknown};  ///< ahead of the point that does not slide sideways
-  double odometer_ratio{kUnknown};  ///< odometer over GNSS speed
+  double turn_ratio{kUnseen};   ///< turn of the course over that of the gyros, about down
+  double turn_ratio_sigma{kUnseen};
+  double antenna_lead_m{kUnseen};  ///< ahead of the point that does not slide sideways
+  double odometer_ratio{kUnseen};  ///< odometer over GNSS speed
 };
 
 /// All of it.

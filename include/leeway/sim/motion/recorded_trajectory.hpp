@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "leeway/sim/motion/trajectory.hpp"
 
@@ -32,5 +33,10 @@ struct RecordedParameters {
 /// at most 5e6 rows and 1e6 s, and attitude in all rows or in none. Its pitch must stay within
 /// 80 deg, its position within 7000 km of the start.
 Trajectory recorded_trajectory(const RecordedParameters& parameters);
+
+/// The same through rows in memory, in the order of time, all with attitude.
+/// @param parameters  of which the file is a name alone
+Trajectory recorded_trajectory(const std::vector<NavStateNed>& rows,
+                               const RecordedParameters& parameters);
 
 }  // namespace leeway::sim

@@ -3,6 +3,7 @@
 /// time, and the errors that grow in them.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -25,6 +26,12 @@ namespace leeway::sim {
 /// The logs of the sensors of kAidings, in their order. Empty: none.
 using AidingLogs = std::array<std::filesystem::path, kAidings.size()>;
 
+/// Fixes further apart: after the start one each interval is used, the others are withheld.
+struct Thinning {
+  double start_s{};
+  double interval_s{};
+};
+
 /// Logs of a replay, and what is done with them.
 struct ReplayInput {
   std::filesystem::path imu{};
@@ -35,6 +42,7 @@ struct ReplayInput {
   ImuLogOptions imu_options{};
   GnssLogOptions gnss_options{};
   std::vector<Outage> outages{};
+  std::vector<Thinning> thinnings{};
   double solution_rate_hz{10.0};
   /// Truth outside this window is not used.
   double truth_from_s{-1e300};
@@ -88,6 +96,15 @@ struct OutageEpoch {
   double since_s{};      ///< since it began
   double error_h_m{};
   double sigma_h_m{};  ///< the branch's own sqrt(P_NN + P_EE)
+  Eigen::Vector3d error_n_m{Eigen::Vector3d::Zero()};
+};
+
+/// The error of a branch with thinned fixes, just before it uses one.
+struct ThinnedEpoch {
+  std::size_t thinning{};  ///< of ReplayInput::thinnings
+  double t_s{};
+  Eigen::Vector3d error_n_m{Eigen::Vector3d::Zero()};
+  double course_rad{};  ///< over ground
 };
 
 /// Callbacks on the way; empty ones are not called.
@@ -95,18 +112,24 @@ struct ReplayObserver {
   std::function<void(Time)> progress{};  ///< now and then, with the time reached
   /// At the rate of the solution, with the truth of that time where there is one.
   std::function<void(const Solution&, const std::optional<TruthRecord>&)> epoch{};
+  std::function<void(const Health&)> health{};      ///< at the same rate
   std::function<void(const UpdateOutcome&)> fix{};  ///< every fix that the filter judged
   std::function<void(Time, Verdict)> verdict{};     ///< all but what is accepted or aligned with
   std::function<void(const OutageEpoch&)> outage{};
+  std::function<void(const ThinnedEpoch&)> thinned{};
 };
+
+/// How many copies of the navigator, each of a megabyte or so, a pass over the log may carry.
+inline constexpr std::size_t kMostBranches = 64;
 
 /// Columns of the log of a sensor.
 ScalarColumns columns_of(const Aiding& aiding);
 
-/// The replay of the logs, in one pass and constant memory. The logs are looked at on the way: as
-/// soon as a finding is certain, it stops. Every outage branches from the fully
-/// aided state, so outages may overlap.
-/// @throws Error when a file cannot be read or the configuration is invalid.
+/// The replay of the logs in constant memory. Every outage and every thinning branches from the
+/// fully aided state, so they may overlap: one pass over the logs is made for each kMostBranches of
+/// them that do. The logs are looked at on the way: as soon as a finding is certain, it stops.
+/// @throws Error when a file cannot be read or the configuration is invalid, or when a log that
+/// several passes need is a pipe.
 ReplayResult replay(const ReplayInput& input, const NavigatorConfig& config,
                     const ReplayObserver& observer = {});
 

@@ -8,6 +8,7 @@ import { driftView } from "./drift";
 import { fuseView } from "./fuse";
 import { intervalView } from "./interval";
 import { reduceView } from "./reduce";
+import { replayView } from "./replay";
 
 export const kViews: Readonly<Record<string, MakeView>> = {
   analyze: analyzeView,
@@ -18,4 +19,5 @@ export const kViews: Readonly<Record<string, MakeView>> = {
   fuse: fuseView,
   interval: intervalView,
   reduce: reduceView,
+  replay: replayView,
 };
