@@ -6,6 +6,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/sim/tools/parallel.hpp"
 #include "lib/earth/field_walk.hpp"
+#include "sim/replay/branch.hpp"
 #include "sim/replay/expected_errors.hpp"
 #include "sim/replay/log_survey.hpp"
 
@@ -154,14 +155,12 @@ class Study {
       if (k % kBranchesOfJob == 0) jobs.emplace_back();
       jobs.back().thinnings.push_back(thinnings_[k]);
     }
-    // So many follow each other before one may begin where another has ended.
-    const auto together =
-        static_cast<std::size_t>(std::ceil(study_.durations_s.back() / study_.every_s)) + 1;
-    const std::size_t passes = 1 + (together - 1) / kBranchesOfJob;
-    const std::size_t first = jobs.size();
-    for (std::size_t k = 0; k < outages_.size(); ++k) {
-      if (k < passes) jobs.emplace_back();
-      jobs[first + k % passes].outages.push_back(outages_[k]);
+    std::vector<BranchPlan> plans;
+    for (const Outage& outage : outages_) plans.push_back(BranchPlan::of(plans.size(), outage));
+    for (const auto& pass : passes_of(plans, kBranchesOfJob)) {
+      if (pass.empty()) continue;
+      jobs.emplace_back();
+      for (const BranchPlan& plan : pass) jobs.back().outages.push_back(outages_[plan.index]);
     }
     return jobs;
   }
