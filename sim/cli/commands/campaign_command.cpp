@@ -5,7 +5,7 @@
 #include "leeway/sim/trials/campaign.hpp"
 #include "leeway/sim/trials/trial_journal.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/on_ranks.hpp"
+#include "sim/cli/jobs/on_ranks.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"

@@ -6,7 +6,7 @@
 #include "sim/cli/command.hpp"
 #include "sim/cli/jobs/interval_jobs.hpp"
 #include "sim/cli/jobs/need.hpp"
-#include "sim/cli/on_ranks.hpp"
+#include "sim/cli/jobs/on_ranks.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/interval_tables.hpp"

@@ -1,7 +1,7 @@
 #include "sim/cli/command.hpp"
 #include "sim/cli/commands/fuse_jobs.hpp"
+#include "sim/cli/jobs/on_ranks.hpp"
 #include "sim/cli/limit_options.hpp"
-#include "sim/cli/on_ranks.hpp"
 #include "sim/cli/tables/fuse_tables.hpp"
 #include "sim/cli/tables/replay_tables.hpp"
 #include "sim/tools/shared_work.hpp"

@@ -112,4 +112,10 @@ TEST_CASE("clocks of unknown begin: auto finds what lies between them") {
   CHECK(contains(found.err, "by the turns"));
 }
 
+TEST_CASE("case: two sessions are scored at the times of their solutions") {
+  if (!are_cases_there()) return;
+  const auto rms = leeway(fuse_of_case("two-sessions")).json().at("results").at("rms");
+  CHECK(rms.at("horizontal_m") < 0.56);  // 0.55 m in the case's README; 33.7 m was printed
+}
+
 }  // namespace leeway::test

@@ -170,4 +170,16 @@ TEST_CASE("toml reader: a key of a million characters is refused in one line, at
   CHECK(message.size() < 1000);
 }
 
+TEST_CASE("2026-12-01: keys of 50,000 parts are refused, and not walked into") {
+  std::string dots = "a";
+  for (int k = 0; k < 50000; ++k) dots += ".a";
+  for (const std::string& text : {dots + " = 1\n", "b = 1\n[" + dots + "]\n"}) {
+    CHECK(
+        test::contains(test::message_of<Error>([&] { TomlDocument::from_text(text, "deep.toml"); }),
+                       "a key of more than 256 parts"));
+  }
+  std::string quoted = "a = '" + std::string(1000, '.') + "'\n";
+  TomlDocument::from_text(quoted, "dots.toml");
+}
+
 }  // namespace leeway::sim

@@ -1,4 +1,4 @@
-#include "sim/cli/on_ranks.hpp"
+#include "sim/cli/jobs/on_ranks.hpp"
 
 #include <cstdio>
 #include <exception>
