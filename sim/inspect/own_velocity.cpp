@@ -17,7 +17,7 @@ constexpr double kWayS = 10.0;
 constexpr std::int64_t kFewWindows = 5;
 /// A finding is made where it explains away most of the squares, far beyond their scatter.
 constexpr double kExplained = 0.75;
-constexpr double kGain = 50.0;
+constexpr double kGain = 80.0;
 
 /// An explanation of ways by positions: H times those by velocities.
 struct Explanation {

@@ -48,16 +48,16 @@ void SharedTurns::add(const ImuIncrement& inc) {
     pairs_.clear();
   }
   last_time_ = inc.time;
+  if (inc.dt_s > kBreakS) return;
   levelled_s_ = std::min(levelled_s_ + inc.dt_s, kLevelS);
   down_b_ -= (inc.dv_b_mps + inc.dt_s * down_b_) / levelled_s_;
   const double turn_rad = inc.dtheta_b_rad.dot(down_b_) / std::max(down_b_.norm(), 1e-9);
-  // In whole nanoseconds, that no step is lost or taken twice.
-  std::int64_t step = begin.time_since_epoch() / kStep;
-  if (step * kStep <= begin.time_since_epoch()) ++step;
-  for (; step * kStep <= inc.time.time_since_epoch(); ++step) {
+  if (history_.empty()) first_step_ = begin.time_since_epoch() / kStep + 1;
+  // In whole nanoseconds, and one after the other whatever dt_s says, that no step is lost.
+  for (auto step = first_step_ + static_cast<std::int64_t>(history_.size());
+       step * kStep <= inc.time.time_since_epoch(); ++step) {
     const double to_end_s = to_seconds(inc.time.time_since_epoch() - step * kStep);
-    const double share = 1.0 - to_end_s / inc.dt_s;
-    if (history_.empty()) first_step_ = step;
+    const double share = std::clamp(1.0 - to_end_s / inc.dt_s, 0.0, 1.0);
     history_.push_back({now_.turn_rad + share * turn_rad, now_.dv_b_mps + share * inc.dv_b_mps});
   }
   now_.turn_rad += turn_rad;

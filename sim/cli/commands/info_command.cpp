@@ -65,17 +65,16 @@ void print_notes(const LogSummary& summary) {
   for (const std::string& text : summary.messages) fmt::print("  {}\n", text);
 }
 
-/// The command that comes next, with what mends the findings.
-std::string next_command(const sim::LogsToInspect& logs, const sim::LogLook& look) {
-  std::string command =
-      fmt::format("leeway fuse --imu {} --gnss {}", logs.imu.string(), logs.gnss.string());
+/// The logs, and the options that mend what was found in them, as `fuse` and `replay` take them.
+std::string mended(const sim::LogsToInspect& logs, const sim::LogLook& look) {
+  std::string words = fmt::format("--imu {} --gnss {}", logs.imu.string(), logs.gnss.string());
   for (const sim::Finding& finding : look.findings) {
     const bool is_option = finding.remedy.starts_with("--") &&
                            finding.remedy.find_first_of("<,") == std::string::npos &&
                            std::count(finding.remedy.begin(), finding.remedy.end(), ' ') == 1;
-    if (is_option && finding.certainty != sim::Certainty::kNote) command += " " + finding.remedy;
+    if (is_option && finding.certainty != sim::Certainty::kNote) words += " " + finding.remedy;
   }
-  return command;
+  return words;
 }
 
 void print_info(const sim::LogsToInspect& logs, const sim::InspectedLogs& found) {
@@ -93,7 +92,10 @@ void print_info(const sim::LogsToInspect& logs, const sim::InspectedLogs& found)
   print_notes(found.gnss_summary);
   print_figures(found.look);
   if (!logs.imu.empty() && !logs.gnss.empty()) {
-    fmt::print("\nNext: {}\n", next_command(logs, found.look));
+    fmt::print(
+        "\nNext: how often a fix has to come, and the solution\n  leeway replay {0}\n"
+        "  leeway fuse {0} --out solution.csv\n",
+        mended(logs, found.look));
   }
 }
 

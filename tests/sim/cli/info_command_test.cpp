@@ -37,7 +37,7 @@ TEST_CASE("info: right logs have no finding but notes, and the next command is s
   CHECK(found.at("gnss").at("with_velocity") == 150);
   const Outcome text = leeway("info " + logs);
   CHECK(text.exit_code == 0);
-  CHECK(contains(text.out, "Next: leeway fuse --imu"));
+  CHECK(contains(text.out, "leeway replay --imu"));
 }
 
 TEST_CASE("info: what is no log is refused with what it lacks") {
