@@ -56,9 +56,14 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
     throw Error("LogFormat::gnss_sigma: give two numbers or four");
   }
   std::vector<std::string> notes;
-  LogOpening log{read_head(lines), lines, options.format, notes};
+  LogOpening log{read_head(lines), lines, options.format, notes, {}};
   const GnssLayout& layout = layout_of(log, gnss_layouts());
   ScaledFix parser{layout.parser(log), options};
+  if (log.framing) {
+    return std::make_unique<LogSource<GnssFix, MessageReader>>(
+        MessageReader(std::move(lines).take_bytes(), std::move(log.framing)), std::move(parser),
+        layout.name, std::move(notes));
+  }
   return std::make_unique<LogSource<GnssFix>>(std::move(lines), std::move(parser), layout.name,
                                               std::move(notes));
 }
@@ -66,7 +71,7 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
 }  // namespace
 
 const std::vector<GnssLayout>& gnss_layouts() {
-  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(), nmea()};
+  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(), nmea(), gnss_ubx()};
   return kLayouts;
 }
 

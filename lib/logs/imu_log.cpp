@@ -46,9 +46,10 @@ Eigen::Matrix3d axes_rotation(const std::string& axes) {
 }
 
 /// Rows as increments in body axes.
+template <class Rows>
 class ImuSource final : public RecordSource<ImuIncrement> {
  public:
-  ImuSource(LogSource<ImuRow> rows, const ImuLogOptions& options)
+  ImuSource(Rows rows, const ImuLogOptions& options)
       : rows_(std::move(rows)),
         options_(with_axes(options)),
         rotates_(options_.C_bs != Eigen::Matrix3d::Identity()) {}
@@ -88,7 +89,7 @@ class ImuSource final : public RecordSource<ImuIncrement> {
     return {row.time, dt_s, row.angular, row.linear};
   }
 
-  LogSource<ImuRow> rows_;
+  Rows rows_;
   ImuLogOptions options_;
   bool rotates_;
   std::optional<ImuRow> previous_{};
@@ -100,12 +101,18 @@ std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
     throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
   }
   std::vector<std::string> notes;
-  LogOpening log{read_head(lines), lines, options.format, notes};
+  LogOpening log{read_head(lines), lines, options.format, notes, {}};
   const ImuLayout& layout = layout_of(log, imu_layouts());
   RowParser<ImuRow> parser = layout.parser(log);
-  return std::make_unique<ImuSource>(
-      LogSource<ImuRow>(std::move(lines), std::move(parser), layout.name, std::move(notes)),
-      options);
+  using Lines = LogSource<ImuRow>;
+  using Messages = LogSource<ImuRow, MessageReader>;
+  if (log.framing) {
+    MessageReader messages(std::move(lines).take_bytes(), std::move(log.framing));
+    return std::make_unique<ImuSource<Messages>>(
+        Messages(std::move(messages), std::move(parser), layout.name, std::move(notes)), options);
+  }
+  return std::make_unique<ImuSource<Lines>>(
+      Lines(std::move(lines), std::move(parser), layout.name, std::move(notes)), options);
 }
 
 }  // namespace

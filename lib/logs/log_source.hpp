@@ -1,6 +1,6 @@
 /// @file
-/// What all log readers share: lines to rows in strictly increasing time, every damaged line
-/// counted. Private to the log readers.
+/// What all log readers share: lines or messages to rows in strictly increasing time, every damaged
+/// one counted. Private to the log readers.
 #pragma once
 
 #include <chrono>
@@ -14,6 +14,7 @@
 #include "leeway/logs/line_reader.hpp"
 #include "leeway/logs/log_reader.hpp"
 #include "leeway/logs/log_summary.hpp"
+#include "lib/logs/messages/message_reader.hpp"
 #include "lib/logs/text_fields.hpp"
 
 namespace leeway {
@@ -23,6 +24,24 @@ bool is_blank_or_comment(std::string_view line);
 
 /// "path:line:column: reason: 'text'".
 std::string damage_message(const LineReader& lines, std::string_view line, const Fault& fault);
+
+/// "path: byte 123: reason", and the fault's text where it is none of the message's own.
+std::string damage_message(const MessageReader& messages, std::string_view message,
+                           const Fault& fault);
+
+/// What delivers records to a LogSource: lines of text, or messages.
+inline bool is_no_record(const LineReader&, std::string_view line) {
+  return is_blank_or_comment(line);
+}
+inline bool is_no_record(const MessageReader&, std::string_view) { return false; }
+
+/// Why the record just delivered is damaged, before anybody parses it.
+inline std::optional<LineDamage> damage_of_record(const LineReader& lines) {
+  return lines.overlong() ? std::optional(LineDamage::kTooLong) : std::nullopt;
+}
+inline std::optional<LineDamage> damage_of_record(const MessageReader& messages) {
+  return messages.damaged();
+}
 
 /// Continues seconds of week across the end of the week. Times beyond 0 to 604800 s are no seconds
 /// of week, and stay.
@@ -51,12 +70,12 @@ template <class Row>
 void add_to(Row& /*row*/, const Row& /*carried*/) {}
 
 /// The rows of a log in strictly increasing time. Each counts as a record.
-template <class Row>
+template <class Row, class Records = LineReader>
 class LogSource final : public RecordSource<Row> {
  public:
-  LogSource(LineReader lines, RowParser<Row> parser, std::string_view layout = "CSV",
+  LogSource(Records records, RowParser<Row> parser, std::string_view layout = "CSV",
             std::vector<std::string> notes = {})
-      : lines_(std::move(lines)), parser_(std::move(parser)), layout_(layout) {
+      : records_(std::move(records)), parser_(std::move(parser)), layout_(layout) {
     summary_.notes = std::move(notes);
   }
 
@@ -80,16 +99,17 @@ class LogSource final : public RecordSource<Row> {
 
   std::optional<Row> read() {
     Row row;
-    while (const auto line = lines_.next()) {
-      if (is_blank_or_comment(*line)) continue;
-      line_ = *line;
-      ++summary_.lines;
-      if (lines_.overlong()) {
-        reject(LineDamage::kTooLong);
-      } else if (const auto fault = parser_(line_, row)) {
+    while (const auto record = is_repeated_ ? std::optional(line_) : records_.next()) {
+      if (is_no_record(records_, *record)) continue;
+      line_ = *record;
+      if (!std::exchange(is_repeated_, false)) ++summary_.lines;
+      if (const auto damage = damage_of_record(records_)) {
+        reject(*damage);
+      } else if (const auto fault = parser_(line_, row); fault && !fault->is_row) {
         if (fault->is_damage)
-          summary_.add_damage(fault->reason, damage_message(lines_, line_, *fault));
-      } else if (last_ && time_of(row) == *last_ && carries_over(row, *newest_)) {
+          summary_.add_damage(fault->reason, damage_message(records_, line_, *fault));
+      } else if (is_repeated_ = fault.has_value();
+                 last_ && time_of(row) == *last_ && carries_over(row, *newest_)) {
         carry_over(row);
       } else if (last_ && time_of(row) <= *last_) {
         reject_order(time_of(row), *last_);
@@ -97,7 +117,7 @@ class LogSource final : public RecordSource<Row> {
         return row;
       }
     }
-    summary_.incomplete = lines_.damage();
+    summary_.incomplete = records_.damage();
     const bool holds_row = !std::exchange(is_asked_, true) && !parser_({}, row);
     if (holds_row && !(last_ && time_of(row) <= *last_)) return row;
     return std::nullopt;
@@ -107,7 +127,7 @@ class LogSource final : public RecordSource<Row> {
   // damaged one taken, all that follow would go back in time and the rest of the log would be lost.
   Row settle(Row row) {
     for (;;) {
-      std::string message = damage_message(lines_, line_, {LineDamage::kTimeJumpsAhead, line_});
+      std::string message = damage_message(records_, line_, {LineDamage::kTimeJumpsAhead, line_});
       std::optional<Row> following = read();
       while (following && time_of(*following) <= time_of(row) &&
              time_of(row) - time_of(*following) <= kSuspectJump) {
@@ -137,14 +157,15 @@ class LogSource final : public RecordSource<Row> {
   }
 
   void reject(LineDamage reason) {
-    summary_.add_damage(reason, damage_message(lines_, line_, {reason, line_}));
+    summary_.add_damage(reason, damage_message(records_, line_, {reason, line_}));
   }
 
-  LineReader lines_;
+  Records records_;
   RowParser<Row> parser_;
   std::string_view layout_;
   LogSummary summary_{};
-  std::string_view line_{};    // read last
+  std::string_view line_{};    // read last, or the message
+  bool is_repeated_{false};    // it has more rows
   bool is_asked_{false};       // the parser, for what it holds at the end
   std::optional<Row> held_{};  // read ahead to settle() the row before it
   std::optional<Time> last_{};

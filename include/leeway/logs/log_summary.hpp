@@ -12,7 +12,7 @@
 
 namespace leeway {
 
-/// Reasons for which a line is not used.
+/// Reasons for which a line, or a message of a binary log, is not used.
 enum class LineDamage {
   kNotANumber,
   kMissingField,
@@ -23,11 +23,15 @@ enum class LineDamage {
   kOutOfRange,
   kTooLong,   ///< LineReader::kMaxLineBytes
   kChecksum,  ///< missing, or not that of the record
+  kCutShort,  ///< a message without its end
+  kLost,      ///< bytes of no message, where one must be
 };
 constexpr auto names(LineDamage) {
-  return std::array{"not a number",   "missing field", "not finite",
-                    "time goes back", "time repeated", "time jumps ahead of the lines after it",
-                    "out of range",   "line too long", "checksum does not match"};
+  return std::array{
+      "not a number",   "missing field",      "not finite",
+      "time goes back", "time repeated",      "time jumps ahead of the lines after it",
+      "out of range",   "line too long",      "checksum does not match",
+      "cut short",      "bytes of no message"};
 }
 inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 

@@ -22,6 +22,7 @@ GnssLayout gnss_csv();
 GnssLayout gnss_kf_gins();
 GnssLayout rtklib_pos();
 GnssLayout nmea();
+GnssLayout gnss_ubx();
 
 /// The table of the layouts (gnss_log.cpp).
 const std::vector<GnssLayout>& gnss_layouts();
