@@ -71,7 +71,8 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
 }  // namespace
 
 const std::vector<GnssLayout>& gnss_layouts() {
-  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(), nmea(), gnss_ubx()};
+  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(),
+                                    nmea(),     gnss_ubx(),     gnss_ulog()};
   return kLayouts;
 }
 

@@ -83,7 +83,8 @@ class ImuSource final : public RecordSource<ImuIncrement> {
   ImuIncrement increment(const ImuRow& row) const {
     if (row.is_rate) {
       return increment_between({previous_->time, previous_->angular, previous_->linear},
-                               {row.time, row.angular, row.linear}, options_.meaning);
+                               {row.time, row.angular, row.linear},
+                               row.is_mean ? RateMeaning::kMean : options_.meaning);
     }
     const double dt_s = row.dt_s > 0.0 ? row.dt_s : to_seconds(row.time - previous_->time);
     return {row.time, dt_s, row.angular, row.linear};
@@ -118,7 +119,8 @@ std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
 }  // namespace
 
 const std::vector<ImuLayout>& imu_layouts() {
-  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins()};
+  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins(),
+                                    imu_ulog()};
   return kLayouts;
 }
 

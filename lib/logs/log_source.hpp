@@ -3,6 +3,7 @@
 /// one counted. Private to the log readers.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -43,6 +44,14 @@ inline std::optional<LineDamage> damage_of_record(const MessageReader& messages)
   return messages.damaged();
 }
 
+/// "line 12", or "byte 123" of messages.
+inline std::string place_of_record(const LineReader& lines) {
+  return "line " + std::to_string(lines.line_number());
+}
+inline std::string place_of_record(const MessageReader& messages) {
+  return "byte " + std::to_string(messages.offset());
+}
+
 /// Continues seconds of week across the end of the week. Times beyond 0 to 604800 s are no seconds
 /// of week, and stay.
 class WeekUnroller {
@@ -81,9 +90,10 @@ class LogSource final : public RecordSource<Row> {
 
   std::optional<Row> next() override {
     std::optional<Row> row = held_ ? std::exchange(held_, std::nullopt) : read();
-    if (row && (!last_ || time_of(*row) - *last_ > kSuspectJump)) row = settle(std::move(*row));
+    if (row && (!last_ || time_of(*row) - *last_ > suspect_)) row = settle(std::move(*row));
     if (!row) return row;
     last_ = time_of(*row);
+    learn_step(*last_);
     newest_ = *row;
     if (carried_) add_to(*row, *std::exchange(carried_, std::nullopt));
     ++summary_.records;
@@ -96,10 +106,19 @@ class LogSource final : public RecordSource<Row> {
 
  private:
   static constexpr Duration kSuspectJump = std::chrono::seconds{10};
+  static constexpr int kSuspectSteps = 10;
+
+  // A fast log is doubted sooner: what is believed of a damaged time costs all rows before it.
+  void learn_step(Time time) {
+    if (!first_) first_ = time;
+    if (summary_.records == kSuspectSteps) suspect_ = std::min(time - *first_, kSuspectJump);
+  }
 
   std::optional<Row> read() {
     Row row;
-    while (const auto record = is_repeated_ ? std::optional(line_) : records_.next()) {
+    while (const auto record = second_session_ ? std::nullopt
+                               : is_repeated_  ? std::optional(line_)
+                                               : records_.next()) {
       if (is_no_record(records_, *record)) continue;
       line_ = *record;
       if (!std::exchange(is_repeated_, false)) ++summary_.lines;
@@ -113,13 +132,19 @@ class LogSource final : public RecordSource<Row> {
         carry_over(row);
       } else if (last_ && time_of(row) <= *last_) {
         reject_order(time_of(row), *last_);
+        watch_for_session(time_of(row));
       } else {
+        restart_.reset();
         return row;
       }
     }
-    summary_.incomplete = records_.damage();
-    const bool holds_row = !std::exchange(is_asked_, true) && !parser_({}, row);
-    if (holds_row && !(last_ && time_of(row) <= *last_)) return row;
+    if (!second_session_) summary_.incomplete = records_.damage();
+    if (std::exchange(is_asked_, true)) return std::nullopt;
+    const auto fault = parser_({}, row);
+    // What is wrong with a log as a whole has a text; an empty line is no fault.
+    if (fault && fault->is_damage && !fault->text.empty())
+      summary_.add_damage(fault->reason, damage_message(records_, {}, *fault));
+    if (!fault && !(last_ && time_of(row) <= *last_)) return row;
     return std::nullopt;
   }
 
@@ -130,7 +155,7 @@ class LogSource final : public RecordSource<Row> {
       std::string message = damage_message(records_, line_, {LineDamage::kTimeJumpsAhead, line_});
       std::optional<Row> following = read();
       while (following && time_of(*following) <= time_of(row) &&
-             time_of(row) - time_of(*following) <= kSuspectJump) {
+             time_of(row) - time_of(*following) <= suspect_) {
         reject_order(time_of(*following), time_of(row));
         following = read();
       }
@@ -140,8 +165,22 @@ class LogSource final : public RecordSource<Row> {
       }
       summary_.add_damage(LineDamage::kTimeJumpsAhead, std::move(message));
       row = std::move(*following);
-      if (last_ && time_of(row) - *last_ <= kSuspectJump) return row;
+      if (last_ && time_of(row) - *last_ <= suspect_) return row;
     }
+  }
+
+  // Times that go back and then go on are no damage: they are those of another session, whose end
+  // would be taken for the end of this one.
+  void watch_for_session(Time time) {
+    if (!restart_ || time <= restart_->last)
+      restart_ = Restart{time, time, place_of_record(records_)};
+    restart_->last = time;
+    const Duration back = *last_ - restart_->first;
+    second_session_ = back > kSuspectJump && time - restart_->first > kSuspectJump;
+    if (!second_session_) return;
+    summary_.incomplete = records_.path() + ": a second session begins at " + restart_->place +
+                          ", with times " + std::to_string(to_seconds(back)) +
+                          " s earlier; it is not read: split the file there";
   }
 
   void carry_over(const Row& row) {
@@ -164,13 +203,24 @@ class LogSource final : public RecordSource<Row> {
   RowParser<Row> parser_;
   std::string_view layout_;
   LogSummary summary_{};
-  std::string_view line_{};    // read last, or the message
-  bool is_repeated_{false};    // it has more rows
+  std::string_view line_{};  // read last, or the message
+  bool is_repeated_{false};  // it has more rows
+
+  // Rows before last_, each later than the one before.
+  struct Restart {
+    Time first{};
+    Time last{};
+    std::string place{};
+  };
+  std::optional<Restart> restart_{};
+  bool second_session_{false};
   bool is_asked_{false};       // the parser, for what it holds at the end
   std::optional<Row> held_{};  // read ahead to settle() the row before it
   std::optional<Time> last_{};
-  std::optional<Row> newest_{};   // as it was read
-  std::optional<Row> carried_{};  // waits for the next row
+  std::optional<Time> first_{};
+  Duration suspect_{kSuspectJump};  // a longer step, of some ten of the usual ones
+  std::optional<Row> newest_{};     // as it was read
+  std::optional<Row> carried_{};    // waits for the next row
 };
 
 }  // namespace leeway

@@ -38,6 +38,8 @@ struct GnssLogOptions {
 ///   printed correlations are rounded beyond a positive definite matrix, only its diagonal is used.
 /// - "u-blox UBX": NAV-PVT, with the place of NAV-HPPOSLLH where it is there. Accuracies of several
 ///   axes together are shared evenly among them. What the receiver refuses itself is no fix.
+/// - "PX4 ULog": vehicle_gps_position, or sensor_gps in a log without it; times since the start of
+///   the system.
 ///
 /// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
 /// a latitude beyond +-90 deg or a longitude beyond +-360 deg. So does a standard deviation not in

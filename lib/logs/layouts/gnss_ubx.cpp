@@ -68,13 +68,14 @@ class UbxFixParser {
   explicit UbxFixParser(UbxWeek week) : week_(std::move(week)) {}
 
   std::optional<Fault> operator()(std::string_view message, GnssFix& fix) {
-    if (message.empty()) return finish(fix);
+    if (message.empty()) return has_places_ ? finish(fix) : kNoPlaces;
     const UbxKind kind = ubx_kind(message);
     const std::string_view payload = ubx_payload(message);
     week_.learn(kind, payload);
     const bool is_pvt = kind == UbxKind::kNavPvt && payload.size() >= kFixPvtBytes;
     const bool is_precise = kind == UbxKind::kNavHpPosLlh && payload.size() >= kHpPosLlhBytes;
     if (!is_pvt && !is_precise) return kNoRow;
+    has_places_ = true;
     const auto time_of_week_ms = number_at<std::uint32_t>(payload, is_pvt ? 0 : 4);
     std::optional<Fault> outcome = kNoRow;
     if (time_of_week_ms != epoch_.time_of_week_ms) {
@@ -121,8 +122,12 @@ class UbxFixParser {
     return std::nullopt;
   }
 
+  static constexpr Fault kNoPlaces{LineDamage::kMissingField,
+                                   "NAV-PVT or NAV-HPPOSLLH, one of which must be recorded"};
+
   UbxWeek week_;
   UbxEpoch epoch_{};
+  bool has_places_{false};
 };
 
 RowParser<GnssFix> ubx_fix_parser(LogOpening& log) {

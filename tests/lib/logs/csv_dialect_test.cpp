@@ -136,7 +136,10 @@ TEST_CASE("the unit of a time is told by its step, and a name that contradicts i
 }
 
 TEST_CASE("a binary file is refused as one") {
-  CHECK(contains(imu_refusal(std::string("ULog\x01\x12\x35\0\0", 9)), "is a binary file"));
+  CHECK(contains(imu_refusal(std::string("\x7F"
+                                         "ELF\x02\x01\x01\0\0",
+                                         9)),
+                 "is a binary file"));
 }
 
 TEST_CASE("linear acceleration, without gravity, is refused with the remedy") {
