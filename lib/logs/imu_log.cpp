@@ -119,7 +119,7 @@ std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
 }  // namespace
 
 const std::vector<ImuLayout>& imu_layouts() {
-  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins(),
+  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins(), imu_ubx(),
                                     imu_ulog()};
   return kLayouts;
 }

@@ -28,6 +28,7 @@ struct ImuLogOptions {
 /// - "CSV, increments": t_s, dt_s, dtheta_x_rad .. dtheta_z_rad, dv_x_mps .. dv_z_mps: lossless.
 /// - "KF-GINS text": no header, blanks between: seconds of week, which count on past the end of the
 ///   week, dtheta xyz (rad), dv xyz (m/s).
+/// - "u-blox UBX": ESF-RAW or ESF-MEAS; times are told by the NAV-PVT among them, to some 0.05 s.
 /// - "PX4 ULog": sensor_combined, means of rates; times since the start of the system.
 ///
 /// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,

@@ -40,6 +40,7 @@ using ImuLayout = LogLayout<ImuRow>;
 ImuLayout imu_csv_rates();
 ImuLayout imu_csv_increments();
 ImuLayout imu_kf_gins();
+ImuLayout imu_ubx();
 ImuLayout imu_ulog();
 
 /// The table of the layouts (imu_log.cpp).

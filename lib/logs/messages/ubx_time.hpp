@@ -20,6 +20,8 @@ bool has_ubx_kind(const LogOpening& log, UbxKind kind);
 /// are those of the week, which go on over its end.
 class UbxWeek {
  public:
+  UbxWeek() = default;
+
   /// Says in the notes that a log has no week.
   explicit UbxWeek(LogOpening& log);
 
@@ -33,7 +35,7 @@ class UbxWeek {
   std::optional<Time> time_of_pvt(std::string_view payload);
 
  private:
-  bool has_week_;
+  bool has_week_{false};
   std::optional<Duration> week_start_{};
   std::uint32_t newest_ms_{0};
   WeekUnroller unroller_{};
