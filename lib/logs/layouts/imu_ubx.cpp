@@ -85,8 +85,8 @@ EsfClock esf_clock_of(const LogOpening& log) {
   std::int64_t last_count = 0, first_ms = 0, last_ms = 0;
   std::string_view bytes = log.head.bytes;
   while (!bytes.empty()) {
-    const Frame frame = ubx_frame(bytes, true);
-    if (frame.kind == Frame::Kind::kMessage) {
+    const MessageFrame frame = ubx_frame(bytes, true);
+    if (frame.kind == MessageFrame::Kind::kMessage) {
       const UbxKind kind = ubx_kind(bytes);
       const std::string_view payload = ubx_payload(bytes.substr(0, frame.size));
       if (kind == clock.kind) {

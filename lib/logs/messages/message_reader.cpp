@@ -12,9 +12,9 @@ std::optional<std::string_view> MessageReader::next() {
   bool is_end = false;
   while (!is_endless_) {
     const std::string_view bytes = bytes_.view();
-    Frame frame;
+    MessageFrame frame;
     if (!bytes.empty()) frame = framing_(bytes, is_end);
-    if (frame.kind == Frame::Kind::kMoreBytes) {
+    if (frame.kind == MessageFrame::Kind::kMoreBytes) {
       if (bytes_.refill()) continue;
       if (is_end || bytes_.view().empty()) return std::nullopt;
       is_end = true;
@@ -22,11 +22,12 @@ std::optional<std::string_view> MessageReader::next() {
     }
     offset_ = bytes_.offset();
     bytes_.take(frame.size);
-    without_message_ = frame.kind == Frame::Kind::kMessage ? 0 : without_message_ + frame.size;
+    without_message_ =
+        frame.kind == MessageFrame::Kind::kMessage ? 0 : without_message_ + frame.size;
     is_endless_ = without_message_ > kMaxBytesWithoutMessage;
     damaged_.reset();
-    if (frame.kind == Frame::Kind::kDamage) damaged_ = frame.reason;
-    if (frame.kind != Frame::Kind::kForeign) return bytes.substr(0, frame.size);
+    if (frame.kind == MessageFrame::Kind::kDamage) damaged_ = frame.reason;
+    if (frame.kind != MessageFrame::Kind::kForeign) return bytes.substr(0, frame.size);
   }
   return std::nullopt;
 }

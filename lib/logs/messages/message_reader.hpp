@@ -15,7 +15,7 @@
 namespace leeway {
 
 /// What stands at the begin of bytes.
-struct Frame {
+struct MessageFrame {
   enum class Kind {
     kMoreBytes,  ///< to be told with more of them
     kMessage,
@@ -29,7 +29,7 @@ struct Frame {
 
 /// Tells the frame of bytes, of which there is one at least.
 /// @param is_end  there are no more: kMoreBytes is no answer
-using Framing = std::function<Frame(std::string_view bytes, bool is_end)>;
+using Framing = std::function<MessageFrame(std::string_view bytes, bool is_end)>;
 
 /// Reader of a file message by message, without allocating for one.
 class MessageReader {

@@ -28,29 +28,32 @@ bool has_ubx_checksum(std::string_view message) {
 
 UbxKind ubx_kind(std::string_view message) { return UbxKind{number_at<std::uint16_t>(message, 2)}; }
 
-Frame ubx_frame(std::string_view bytes, bool is_end) {
+MessageFrame ubx_frame(std::string_view bytes, bool is_end) {
   const std::size_t sync = std::min(bytes.find(kUbxSync), bytes.size());
   if (sync == bytes.size() && bytes.back() == kUbxSync[0] && !is_end) {
-    return bytes.size() == 1 ? Frame{} : Frame{Frame::Kind::kForeign, bytes.size() - 1};
+    return bytes.size() == 1 ? MessageFrame{}
+                             : MessageFrame{MessageFrame::Kind::kForeign, bytes.size() - 1};
   }
-  if (sync > 0) return {Frame::Kind::kForeign, sync};
-  const Frame more = is_end ? Frame{Frame::Kind::kForeign, kUbxSync.size()} : Frame{};
+  if (sync > 0) return {MessageFrame::Kind::kForeign, sync};
+  const MessageFrame more =
+      is_end ? MessageFrame{MessageFrame::Kind::kForeign, kUbxSync.size()} : MessageFrame{};
   if (bytes.size() < kUbxHeadBytes) return more;
   const std::size_t size = kUbxFrameBytes + number_at<std::uint16_t>(bytes, 4);
   const bool is_whole = bytes.size() >= size;
   if (!is_whole && !is_end) return more;
-  if (is_whole && has_ubx_checksum(bytes.substr(0, size))) return {Frame::Kind::kMessage, size};
+  if (is_whole && has_ubx_checksum(bytes.substr(0, size)))
+    return {MessageFrame::Kind::kMessage, size};
   // The length may be what is damaged: the next message is searched for behind the sync.
   const bool is_ours = bytes[2] == kUbxNavigation || bytes[2] == kUbxSensors;
-  return {is_ours ? Frame::Kind::kDamage : Frame::Kind::kForeign, kUbxSync.size(),
+  return {is_ours ? MessageFrame::Kind::kDamage : MessageFrame::Kind::kForeign, kUbxSync.size(),
           is_whole ? LineDamage::kChecksum : LineDamage::kCutShort};
 }
 
 bool is_ubx(const LogOpening& log) {
   std::string_view bytes = log.head.bytes;
   while (!bytes.empty()) {
-    const Frame frame = ubx_frame(bytes, true);
-    if (frame.kind == Frame::Kind::kMessage) return true;
+    const MessageFrame frame = ubx_frame(bytes, true);
+    if (frame.kind == MessageFrame::Kind::kMessage) return true;
     bytes.remove_prefix(frame.size);
   }
   return false;

@@ -30,7 +30,7 @@ inline std::string_view ubx_payload(std::string_view message) {
 
 /// The frame of bytes that may begin with a message. What is no UBX, as NMEA and RTCM in between,
 /// is foreign; damage is that of messages of navigation and of sensors.
-Frame ubx_frame(std::string_view bytes, bool is_end);
+MessageFrame ubx_frame(std::string_view bytes, bool is_end);
 
 /// Whether messages are in what the log begins with.
 bool is_ubx(const LogOpening& log);

@@ -31,8 +31,8 @@ std::optional<Duration> utc_of_pvt(std::string_view pvt) {
 bool has_ubx_kind(const LogOpening& log, UbxKind kind) {
   std::string_view bytes = log.head.bytes;
   while (!bytes.empty()) {
-    const Frame frame = ubx_frame(bytes, true);
-    if (frame.kind == Frame::Kind::kMessage && ubx_kind(bytes) == kind) return true;
+    const MessageFrame frame = ubx_frame(bytes, true);
+    if (frame.kind == MessageFrame::Kind::kMessage && ubx_kind(bytes) == kind) return true;
     bytes.remove_prefix(frame.size);
   }
   return false;

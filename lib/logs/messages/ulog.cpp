@@ -124,24 +124,25 @@ bool is_ulog_head(std::string_view message) { return message.starts_with(kUlogMa
 
 bool is_ulog(const LogOpening& log) { return is_ulog_head(log.head.bytes); }
 
-Frame ulog_frame(std::string_view bytes, bool is_end) {
+MessageFrame ulog_frame(std::string_view bytes, bool is_end) {
   if (bytes.size() < kUlogFileHeadBytes && !is_end) return {};
   const auto size = plausible_size(bytes);
   if (size) {
     if (bytes.size() < *size + kUlogLookAhead && !is_end) return {};
-    if (bytes.size() == *size) return {Frame::Kind::kMessage, *size};
+    if (bytes.size() == *size) return {MessageFrame::Kind::kMessage, *size};
     const bool is_whole = bytes.size() > *size;
-    if (is_whole && plausible_size(bytes.substr(*size))) return {Frame::Kind::kMessage, *size};
+    if (is_whole && plausible_size(bytes.substr(*size)))
+      return {MessageFrame::Kind::kMessage, *size};
     // What is damaged is the length, if messages go on within; else it is what follows.
-    if (is_whole && next_chain(bytes) >= *size) return {Frame::Kind::kMessage, *size};
+    if (is_whole && next_chain(bytes) >= *size) return {MessageFrame::Kind::kMessage, *size};
   }
   const std::size_t next = next_chain(bytes);
   const bool is_found = next < bytes.size();
   if (!is_found && !is_end) {
     if (bytes.size() < ByteReader::kBufferBytes / 2) return {};
-    return {Frame::Kind::kDamage, bytes.size() - kUlogLookAhead, LineDamage::kLost};
+    return {MessageFrame::Kind::kDamage, bytes.size() - kUlogLookAhead, LineDamage::kLost};
   }
-  return {Frame::Kind::kDamage, next,
+  return {MessageFrame::Kind::kDamage, next,
           size && !is_found ? LineDamage::kCutShort : LineDamage::kLost};
 }
 

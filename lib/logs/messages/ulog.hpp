@@ -22,7 +22,7 @@ inline constexpr double kMostUlogUs = 9e15;
 /// The frame of bytes that may begin with a message, or with the head of a log. Messages have no
 /// checksum: what shows damage is that no message follows. The search goes on within the message
 /// whose length was wrong.
-Frame ulog_frame(std::string_view bytes, bool is_end);
+MessageFrame ulog_frame(std::string_view bytes, bool is_end);
 
 /// Whether it is the head that every log begins with.
 bool is_ulog_head(std::string_view message);

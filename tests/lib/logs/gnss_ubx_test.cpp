@@ -183,6 +183,15 @@ TEST_CASE("UBX: positions alone, without a week: times of the week, over its end
   CHECK(of_week.fixes[2].time == time_from_gps(2382, 1.0));
 }
 
+TEST_CASE("UBX: bytes without an end and without a message are given up") {
+  const TempDir dir;
+  const std::string zeros(std::size_t{80} << 20, '\0');
+  const ReadFixes read = read_file(dir.gzip_file("a", pvt_message(pvt(0)) + zeros));
+  CHECK(read.fixes.size() == 1);
+  CHECK(contains(read.summary.incomplete, "no message within 64 MiB"));
+  CHECK(contains(test::message_of<Error>([] { GnssLogReader("/dev/zero"); }), "is a binary file"));
+}
+
 TEST_CASE("UBX: a receiver's file is read to its last fix") {
   const std::filesystem::path path =
       std::filesystem::path(LEEWAY_SHARED_DIR) / "data" / "formats" / "nav-pvt.ubx";

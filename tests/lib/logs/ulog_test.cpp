@@ -212,6 +212,14 @@ TEST_CASE("ULog: a second log in the file is told") {
   CHECK(contains(read.summary.incomplete, "a second session begins at byte"));
 }
 
+TEST_CASE("ULog: bytes without an end and without a message are given up") {
+  const auto read =
+      read_bytes<ImuLogReader>(definitions() + combined(1'000'000, 0.1F, 1.0F) +
+                               combined(1'005'000, 0.1F, 1.0F) + std::string(80U << 20, '\0'));
+  CHECK(read.records.size() == 1);
+  CHECK(contains(read.summary.incomplete, "no message within 64 MiB"));
+}
+
 TEST_CASE("ULog: a log without the topic says which it must have") {
   const auto imu = read_bytes<ImuLogReader>(file_head() + ulog_message('B', std::string(40, '\0')));
   CHECK(imu.records.empty());
