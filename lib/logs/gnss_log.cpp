@@ -9,6 +9,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "lib/logs/layouts/gnss_layouts.hpp"
+#include "lib/logs/layouts/phone_folder.hpp"
 
 namespace leeway {
 namespace {
@@ -71,13 +72,13 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
 }  // namespace
 
 const std::vector<GnssLayout>& gnss_layouts() {
-  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(),
-                                    nmea(),     gnss_ubx(),     gnss_ulog()};
+  static const std::vector kLayouts{gnss_csv(), gnss_phone(), gnss_kf_gins(), rtklib_pos(),
+                                    nmea(),     gnss_ubx(),   gnss_ulog()};
   return kLayouts;
 }
 
 GnssLogReader::GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options)
-    : LogReader(gnss_source(LineReader(path), options)) {}
+    : LogReader(gnss_source(LineReader(location_of_phone(path)), options)) {}
 
 GnssLogWriter::GnssLogWriter(const std::filesystem::path& path)
     : csv_(path,

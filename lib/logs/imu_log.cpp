@@ -9,6 +9,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "lib/logs/layouts/imu_layouts.hpp"
+#include "lib/logs/layouts/phone_folder.hpp"
 
 namespace leeway {
 namespace {
@@ -96,11 +97,20 @@ class ImuSource final : public RecordSource<ImuIncrement> {
   std::optional<ImuRow> previous_{};
 };
 
+void validate_rotation(const ImuLogOptions& options) {
+  if (is_proper_rotation(options.C_bs)) return;
+  throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
+}
+
+std::unique_ptr<RecordSource<ImuIncrement>> phone_source(const std::filesystem::path& folder,
+                                                         const ImuLogOptions& options) {
+  validate_rotation(options);
+  return std::make_unique<ImuSource<PhoneRows>>(PhoneRows(folder, options.format), options);
+}
+
 std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
                                                        const ImuLogOptions& options) {
-  if (!is_proper_rotation(options.C_bs)) {
-    throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
-  }
+  validate_rotation(options);
   std::vector<std::string> notes;
   LogOpening log{read_head(lines), lines, options.format, notes, {}};
   const ImuLayout& layout = layout_of(log, imu_layouts());
@@ -125,7 +135,8 @@ const std::vector<ImuLayout>& imu_layouts() {
 }
 
 ImuLogReader::ImuLogReader(const std::filesystem::path& path, const ImuLogOptions& options)
-    : LogReader(imu_source(LineReader(path), options)) {}
+    : LogReader(is_phone_folder(path) ? phone_source(path, options)
+                                                    : imu_source(LineReader(path), options)) {}
 
 ImuLogWriter::ImuLogWriter(const std::filesystem::path& path)
     : csv_(path, {"t_s", "dt_s", "dtheta_x_rad", "dtheta_y_rad", "dtheta_z_rad", "dv_x_mps",

@@ -38,6 +38,7 @@ struct GnssLogOptions {
 ///   printed correlations are rounded beyond a positive definite matrix, only its diagonal is used.
 /// - "u-blox UBX": NAV-PVT, with the place of NAV-HPPOSLLH where it is there. Accuracies of several
 ///   axes together are shared evenly among them. What the receiver refuses itself is no fix.
+/// - "phone location": of Sensor Logger or phyphox; of a folder it is Location.csv.
 /// - "PX4 ULog": vehicle_gps_position, or sensor_gps in a log without it; times since the start of
 ///   the system.
 ///

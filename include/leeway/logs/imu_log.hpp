@@ -30,6 +30,7 @@ struct ImuLogOptions {
 ///   week, dtheta xyz (rad), dv xyz (m/s).
 /// - "u-blox UBX": ESF-RAW or ESF-MEAS; times are told by the NAV-PVT among them, to some 0.05 s.
 /// - "PX4 ULog": sensor_combined, means of rates; times since the start of the system.
+/// - "phone folder": a folder of CSV files, one a sensor, of Sensor Logger or phyphox.
 ///
 /// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
 /// an angular rate beyond 1e3 rad/s (or rad) or a specific force beyond 1e5 m/s^2 (or m/s). So does

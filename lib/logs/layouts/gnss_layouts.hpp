@@ -19,6 +19,7 @@ namespace leeway {
 using GnssLayout = LogLayout<GnssFix>;
 
 GnssLayout gnss_csv();
+GnssLayout gnss_phone();
 GnssLayout gnss_kf_gins();
 GnssLayout rtklib_pos();
 GnssLayout nmea();
