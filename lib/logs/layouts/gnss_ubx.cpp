@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "leeway/earth/rotation.hpp"
 #include "lib/logs/layouts/gnss_layouts.hpp"
+#include "lib/logs/layouts/receiver_fix.hpp"
 #include "lib/logs/messages/little_endian.hpp"
 #include "lib/logs/messages/ubx.hpp"
 #include "lib/logs/messages/ubx_time.hpp"
@@ -108,17 +108,12 @@ class UbxFixParser {
     if (!told || !epoch.time || epoch.is_refused) return kNoRow;
     if (std::abs(told->lat_deg) > 90.0) return Fault{LineDamage::kOutOfRange, "latitude"};
     if (std::abs(told->lon_deg) > 360.0) return Fault{LineDamage::kOutOfRange, "longitude"};
-    fix = GnssFix{};
-    fix.time = *epoch.time;
     const Geodetic place{told->lat_deg * kRadPerDeg, told->lon_deg * kRadPerDeg, told->height_m};
-    const double h2 = told->horizontal_m * told->horizontal_m / 2.0;
-    const Eigen::Vector3d R_n_m2(h2, h2, told->vertical_m * told->vertical_m);
-    fix.position = GnssPosition::from_geodetic(place, R_n_m2.asDiagonal().toDenseMatrix());
-    if (epoch.velocity) {
-      const double s2 = epoch.velocity->accuracy_mps * epoch.velocity->accuracy_mps / 3.0;
-      fix.velocity =
-          GnssVelocity::from_ned(place, epoch.velocity->v_n_mps, s2 * Eigen::Matrix3d::Identity());
-    }
+    std::optional<Eigen::Vector3d> v_n_mps;
+    if (epoch.velocity) v_n_mps = epoch.velocity->v_n_mps;
+    fix = receiver_fix(*epoch.time, place, v_n_mps,
+                       {told->horizontal_m, told->vertical_m,
+                        epoch.velocity ? epoch.velocity->accuracy_mps : 0.0});
     return std::nullopt;
   }
 

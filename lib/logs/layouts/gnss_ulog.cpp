@@ -1,8 +1,8 @@
 #include <array>
 #include <cmath>
 
-#include "leeway/earth/rotation.hpp"
 #include "lib/logs/layouts/gnss_layouts.hpp"
+#include "lib/logs/layouts/receiver_fix.hpp"
 #include "lib/logs/messages/ulog.hpp"
 
 namespace leeway {
@@ -89,16 +89,12 @@ class UlogFixParser {
     const double time_us = n[kGpsSample] > 0.0 ? n[kGpsSample] : n[kGpsTimestamp];
     if (!(time_us >= 0.0 && time_us < kMostUlogUs))
       return Fault{LineDamage::kOutOfRange, "timestamp"};
-    fix = GnssFix{};
-    fix.time = Time{std::chrono::microseconds{static_cast<std::int64_t>(time_us)}};
-    const double h2 = n[kGpsEph] * n[kGpsEph] / 2.0;
-    const Eigen::Vector3d R_n_m2(h2, h2, n[kGpsEpv] * n[kGpsEpv]);
-    fix.position = GnssPosition::from_geodetic(place, R_n_m2.asDiagonal().toDenseMatrix());
-    const double s2 = n[kGpsSpeedAccuracy] * n[kGpsSpeedAccuracy] / 3.0;
-    if (n[kGpsVelocityValid] > 0.0 && s2 > 0.0) {
-      fix.velocity = GnssVelocity::from_ned(place, {n[kGpsVn], n[kGpsVe], n[kGpsVd]},
-                                            s2 * Eigen::Matrix3d::Identity());
+    std::optional<Eigen::Vector3d> v_n_mps;
+    if (n[kGpsVelocityValid] > 0.0 && n[kGpsSpeedAccuracy] > 0.0) {
+      v_n_mps.emplace(n[kGpsVn], n[kGpsVe], n[kGpsVd]);
     }
+    fix = receiver_fix(Time{std::chrono::microseconds{static_cast<std::int64_t>(time_us)}}, place,
+                       v_n_mps, {n[kGpsEph], n[kGpsEpv], n[kGpsSpeedAccuracy]});
     return std::nullopt;
   }
 

@@ -144,10 +144,12 @@ class UbxImuParser {
   }
 
   void add(std::uint32_t count, EsfItem item) {
-    const Time time{
-        Duration{std::llround(static_cast<double>(counts_.unroll(count)) * (esf_.count_s * 1e9))}};
-    if (time != newest_) rate_ = force_ = EsfVector{};
-    newest_ = time;
+    if (count != count_) {
+      rate_ = force_ = EsfVector{};
+      count_ = count;
+      const auto counts = static_cast<double>(counts_.unroll(count));
+      newest_ = Time{Duration{std::llround(counts * (esf_.count_s * 1e9))}};
+    }
     switch (item.type) {
       case 5:
         return add_rate(2, item.value);
@@ -182,6 +184,7 @@ class UbxImuParser {
   SensorClock clock_{};
   SampleJoiner samples_{};
   EsfVector rate_{}, force_{};
+  std::optional<std::uint32_t> count_{};
   Time newest_{};  // by the sensor's clock
   bool has_items_{false};
   bool has_more_{false};
