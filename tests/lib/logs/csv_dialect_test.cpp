@@ -142,6 +142,16 @@ TEST_CASE("a binary file is refused as one") {
                  "is a binary file"));
 }
 
+// 2026-12-01: a column of the owner's choice beside one with a name that means the same.
+TEST_CASE("a column that its owner names counts before another of the same meaning") {
+  const TempDir dir;
+  const auto path = dir.file("imu.csv",
+                             "time,stamp,gx,gy,gz,ax,ay,az\n0,10,0,0,0,0,0,1\n"
+                             "1,11,0,0,0,0,0,1\n");
+  ImuLogReader reader(path, {.format = {.time_unit = "s", .columns = {{"t", "stamp"}}}});
+  CHECK(reader.next()->time == time_from_seconds(11.0));
+}
+
 TEST_CASE("linear acceleration, without gravity, is refused with the remedy") {
   CHECK(contains(imu_refusal("Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s),"
                              "Linear Acceleration x (m/s^2),Linear Acceleration y (m/s^2),"
