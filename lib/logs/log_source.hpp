@@ -156,7 +156,11 @@ class LogSource final : public RecordSource<Row> {
       std::optional<Row> following = read();
       while (following && time_of(*following) <= time_of(row) &&
              time_of(row) - time_of(*following) <= suspect_) {
-        reject_order(time_of(*following), time_of(row));
+        if (time_of(*following) == time_of(row) && carries_over(*following, row)) {
+          carry_over(*following);
+        } else {
+          reject_order(time_of(*following), time_of(row));
+        }
         following = read();
       }
       if (!following || time_of(*following) > time_of(row)) {

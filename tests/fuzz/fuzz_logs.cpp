@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -29,10 +30,21 @@ std::string with_ubx_checksums(std::string bytes) {
   return bytes;
 }
 
+/// A phone's recording: its halves are those of the bytes.
+void write_folder(const std::filesystem::path& folder, const std::string& bytes) {
+  std::filesystem::create_directory(folder);
+  const std::size_t half = std::min(bytes.find('\1'), bytes.size());
+  std::ofstream(folder / "Gyroscope.csv", std::ios::binary) << bytes.substr(0, half);
+  std::ofstream(folder / "Accelerometer.csv", std::ios::binary)
+      << bytes.substr(std::min(half + 1, bytes.size()));
+  std::ofstream(folder / "Gravity.csv", std::ios::binary)
+      << bytes.substr(std::min(half + 1, bytes.size()));
+}
+
 }  // namespace
 
 /// Whatever the bytes, they are the records of a log, in strictly increasing time, or an Error. The
-/// first byte chooses the reader, and whether checksums are mended.
+/// first byte chooses the reader, whether checksums are mended, and whether it is a folder.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   static const std::filesystem::path kPath =
@@ -40,6 +52,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string log(reinterpret_cast<const char*>(data + 1), size - 1);
   if (data[0] & 8) log = with_ubx_checksums(std::move(log));
   std::ofstream(kPath, std::ios::binary) << log;
+  static const std::filesystem::path kFolder = kPath.string() + ".d";
+  if (data[0] & 16) write_folder(kFolder, log);
   const auto read_all = [](auto&& reader) {
     leeway::Time last = leeway::Time::min();
     while (const auto record = reader.next()) {
@@ -49,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   };
   try {
     if (data[0] % 2 == 0) {
-      read_all(leeway::ImuLogReader(kPath));
+      read_all(leeway::ImuLogReader((data[0] & 16) != 0 ? kFolder : kPath));
     } else {
       leeway::GnssLogOptions options;
       if (data[0] % 4 == 3) options.format.gnss_sigma = {1.0, 2.0, 0.1, 0.2};

@@ -40,7 +40,7 @@ inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 struct LogSummary {
   static constexpr std::size_t kMaxMessages = 10;
 
-  std::int64_t lines{0};    ///< that carry data: no header, comments, blank lines
+  std::int64_t lines{0};    ///< that carry data: no header, comments, blank lines; or messages
   std::int64_t records{0};  ///< delivered
   /// Lines whose time repeats that of the line before. What they hold, an increment, happened: it
   /// was added to the next record.

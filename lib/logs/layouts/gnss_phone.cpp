@@ -76,7 +76,8 @@ LogFormat format_of_phone(const LogOpening& log) {
 }
 
 bool is_phone_location(const LogOpening& log) {
-  return CsvHeader::understood(log.head.line, "", format_of_phone(log)).has(kPhonePlace);
+  const CsvHeader header = CsvHeader::understood(log.head.line, "", format_of_phone(log));
+  return header.has(kPhonePlace) && !header.has(kPositionColumns);
 }
 
 RowParser<GnssFix> phone_fix_parser(LogOpening& log) {

@@ -62,7 +62,16 @@ for k in range(3):
                                      2, 3, 1, 2, 0.5, 3, 1))
 flight += ulog(b"S", b"\x2f\x73\x13\x20\x25\x0c\xbb\x12") + ulog(b"L", b"6" + bytes(8) + b"end")
 
-seeds = {"ubx_fixes": b"\x09" + fixes, "ubx_sensors": b"\x08" + sensors, "ulog_imu": b"\0" + flight,
+header = b"time,seconds_elapsed,z,y,x\n"
+rows = b"".join(b"%d,%d,9.8,0.1,0.2\n" % (1700000000000000000 + k * 10**7, k) for k in range(12))
+location = (b"time,bearingAccuracy,speedAccuracy,verticalAccuracy,horizontalAccuracy,speed,bearing,"
+            b"altitude,longitude,latitude,seconds_elapsed\n"
+            b"1700000000000000000,2,0.5,3,4,10,90,448.5,-8.25,47.5,0\n"
+            b"1700000001000000000,2,0.5,3,4,10,90,448.5,-8.25,47.5,1\n")
+
+seeds = {"phone_folder": b"\x10" + header + rows + b"\1\n" + header + rows,
+         "phone_location": b"\1" + location,
+         "ubx_fixes": b"\x09" + fixes, "ubx_sensors": b"\x08" + sensors, "ulog_imu": b"\0" + flight,
          "ulog_fixes": b"\1" + flight}
 for name, content in seeds.items():
     (folder / name).write_bytes(content)
