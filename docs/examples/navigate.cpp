@@ -2,6 +2,7 @@
 // usage: navigate < STREAM, lines in the order they arrive:
 //   imu t_s gx gy gz ax ay az                                    rad/s, m/s^2, sensor axes
 //   fix t_s lat_deg lon_deg height_m vn ve vd sigma_m sigma_mps  late ones are welcome
+// t_s is of one clock for both, whatever it counts from: Unix time, GPS time, the start.
 // prints position, sigma and leeway once a second of IMU time.
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,8 @@
 #include <string>
 
 namespace {
+
+constexpr double kEndOfTimeS = 9e9;  // of 64 bits of nanoseconds
 
 leeway::NavigatorConfig car_of_unknown_mount() {
   leeway::NavigatorConfig config;
@@ -62,7 +65,11 @@ int main() {
     std::istringstream in(line);
     std::string kind;
     double t_s = 0.0;
-    if (!(in >> kind >> t_s) || std::abs(t_s) > 1e9) continue;
+    if (!(in >> kind >> t_s)) continue;
+    if (!(std::abs(t_s) < kEndOfTimeS)) {
+      std::cerr << "time beyond +-9e9 s: " << line << '\n';
+      continue;
+    }
     const bool is_imu = kind == "imu";
     const auto verdict = is_imu ? push_sample(navigator, t_s, in) : push_fix(navigator, t_s, in);
     if (verdict > leeway::Verdict::kFused) std::cerr << name(verdict) << ": " << line << '\n';

@@ -80,18 +80,19 @@ CsvHeader CsvHeader::understood(std::string_view line, std::string path, const L
     header.names_unit_[k] = meaning.names_unit;
     is_alias[k] = meaning.is_alias;
   }
-  // Of two that mean the same, Leeway's own name counts; of two times, the first.
+  const auto is_chosen = [&](std::size_t k) {
+    return std::any_of(format.columns.begin(), format.columns.end(), [&](const auto& named) {
+      return named.second == header.titles_[k] || named.second == "-" + header.titles_[k];
+    });
+  };
+  // Of two that mean the same, the owner's choice counts, then Leeway's own name; of two times, the
+  // first.
   for (std::size_t k = 0; k < header.names_.size(); ++k) {
-    if (!is_alias[k]) continue;
-    const auto chosen = [&] {
-      for (const auto& [ours, theirs] : format.columns) {
-        if (theirs == header.titles_[k] || theirs == "-" + header.titles_[k]) return true;
-      }
-      return false;
-    }();
-    for (std::size_t j = 0; j < header.names_.size() && !chosen; ++j) {
+    if (is_chosen(k)) continue;
+    for (std::size_t j = 0; j < header.names_.size(); ++j) {
       if (j == k || header.names_[j] != header.names_[k]) continue;
-      const bool yields = !is_alias[j] || (j < k && header.names_[k] == "t_s");
+      const bool is_later_time = j < k && header.names_[k] == "t_s";
+      const bool yields = is_chosen(j) || (is_alias[k] && (!is_alias[j] || is_later_time));
       if (yields) header.names_[k] = header.titles_[k];
       if (yields) break;
     }

@@ -32,6 +32,9 @@ class CsvHeader {
   std::vector<std::string_view> missing(std::span<const NamedColumn> wanted) const;
   bool has(std::span<const NamedColumn> wanted) const { return missing(wanted).empty(); }
 
+  /// The names as they stand in the log, without quotes.
+  const std::vector<std::string>& titles() const { return titles_; }
+
   /// Marks the columns for parser(). Those the header lacks are left out.
   /// @throws Error when a wanted name stands there twice.
   void use(std::span<const NamedColumn> wanted);

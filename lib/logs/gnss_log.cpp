@@ -9,6 +9,7 @@
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
 #include "lib/logs/layouts/gnss_layouts.hpp"
+#include "lib/logs/layouts/phone_folder.hpp"
 
 namespace leeway {
 namespace {
@@ -56,9 +57,14 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
     throw Error("LogFormat::gnss_sigma: give two numbers or four");
   }
   std::vector<std::string> notes;
-  LogOpening log{read_head(lines), lines, options.format, notes};
+  LogOpening log{read_head(lines), lines, options.format, notes, {}};
   const GnssLayout& layout = layout_of(log, gnss_layouts());
   ScaledFix parser{layout.parser(log), options};
+  if (log.framing) {
+    return std::make_unique<LogSource<GnssFix, MessageReader>>(
+        MessageReader(std::move(lines).take_bytes(), std::move(log.framing)), std::move(parser),
+        layout.name, std::move(notes));
+  }
   return std::make_unique<LogSource<GnssFix>>(std::move(lines), std::move(parser), layout.name,
                                               std::move(notes));
 }
@@ -66,12 +72,13 @@ std::unique_ptr<RecordSource<GnssFix>> gnss_source(LineReader lines,
 }  // namespace
 
 const std::vector<GnssLayout>& gnss_layouts() {
-  static const std::vector kLayouts{gnss_csv(), gnss_kf_gins(), rtklib_pos(), nmea()};
+  static const std::vector kLayouts{gnss_csv(), gnss_phone(), gnss_kf_gins(), rtklib_pos(),
+                                    nmea(),     gnss_ubx(),   gnss_ulog()};
   return kLayouts;
 }
 
 GnssLogReader::GnssLogReader(const std::filesystem::path& path, const GnssLogOptions& options)
-    : LogReader(gnss_source(LineReader(path), options)) {}
+    : LogReader(gnss_source(LineReader(location_of_phone(path)), options)) {}
 
 GnssLogWriter::GnssLogWriter(const std::filesystem::path& path)
     : csv_(path,

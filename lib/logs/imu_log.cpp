@@ -9,6 +9,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "lib/logs/layouts/imu_layouts.hpp"
+#include "lib/logs/layouts/phone_folder.hpp"
 
 namespace leeway {
 namespace {
@@ -46,9 +47,10 @@ Eigen::Matrix3d axes_rotation(const std::string& axes) {
 }
 
 /// Rows as increments in body axes.
+template <class Rows>
 class ImuSource final : public RecordSource<ImuIncrement> {
  public:
-  ImuSource(LogSource<ImuRow> rows, const ImuLogOptions& options)
+  ImuSource(Rows rows, const ImuLogOptions& options)
       : rows_(std::move(rows)),
         options_(with_axes(options)),
         rotates_(options_.C_bs != Eigen::Matrix3d::Identity()) {}
@@ -82,41 +84,59 @@ class ImuSource final : public RecordSource<ImuIncrement> {
   ImuIncrement increment(const ImuRow& row) const {
     if (row.is_rate) {
       return increment_between({previous_->time, previous_->angular, previous_->linear},
-                               {row.time, row.angular, row.linear}, options_.meaning);
+                               {row.time, row.angular, row.linear},
+                               row.is_mean ? RateMeaning::kMean : options_.meaning);
     }
     const double dt_s = row.dt_s > 0.0 ? row.dt_s : to_seconds(row.time - previous_->time);
     return {row.time, dt_s, row.angular, row.linear};
   }
 
-  LogSource<ImuRow> rows_;
+  Rows rows_;
   ImuLogOptions options_;
   bool rotates_;
   std::optional<ImuRow> previous_{};
 };
 
+void validate_rotation(const ImuLogOptions& options) {
+  if (is_proper_rotation(options.C_bs)) return;
+  throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
+}
+
+std::unique_ptr<RecordSource<ImuIncrement>> phone_source(const std::filesystem::path& folder,
+                                                         const ImuLogOptions& options) {
+  validate_rotation(options);
+  return std::make_unique<ImuSource<PhoneRows>>(PhoneRows(folder, options.format), options);
+}
+
 std::unique_ptr<RecordSource<ImuIncrement>> imu_source(LineReader lines,
                                                        const ImuLogOptions& options) {
-  if (!is_proper_rotation(options.C_bs)) {
-    throw Error("ImuLogOptions::C_bs: must be a proper rotation (orthonormal, determinant +1)");
-  }
+  validate_rotation(options);
   std::vector<std::string> notes;
-  LogOpening log{read_head(lines), lines, options.format, notes};
+  LogOpening log{read_head(lines), lines, options.format, notes, {}};
   const ImuLayout& layout = layout_of(log, imu_layouts());
   RowParser<ImuRow> parser = layout.parser(log);
-  return std::make_unique<ImuSource>(
-      LogSource<ImuRow>(std::move(lines), std::move(parser), layout.name, std::move(notes)),
-      options);
+  using Lines = LogSource<ImuRow>;
+  using Messages = LogSource<ImuRow, MessageReader>;
+  if (log.framing) {
+    MessageReader messages(std::move(lines).take_bytes(), std::move(log.framing));
+    return std::make_unique<ImuSource<Messages>>(
+        Messages(std::move(messages), std::move(parser), layout.name, std::move(notes)), options);
+  }
+  return std::make_unique<ImuSource<Lines>>(
+      Lines(std::move(lines), std::move(parser), layout.name, std::move(notes)), options);
 }
 
 }  // namespace
 
 const std::vector<ImuLayout>& imu_layouts() {
-  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins()};
+  static const std::vector kLayouts{imu_csv_rates(), imu_csv_increments(), imu_kf_gins(), imu_ubx(),
+                                    imu_ulog()};
   return kLayouts;
 }
 
 ImuLogReader::ImuLogReader(const std::filesystem::path& path, const ImuLogOptions& options)
-    : LogReader(imu_source(LineReader(path), options)) {}
+    : LogReader(is_phone_folder(path) ? phone_source(path, options)
+                                                    : imu_source(LineReader(path), options)) {}
 
 ImuLogWriter::ImuLogWriter(const std::filesystem::path& path)
     : csv_(path, {"t_s", "dt_s", "dtheta_x_rad", "dtheta_y_rad", "dtheta_z_rad", "dv_x_mps",

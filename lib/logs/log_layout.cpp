@@ -19,14 +19,11 @@ constexpr std::int64_t kMaxHeadLines = 100'000;
 LogHead read_head(LineReader& lines) {
   LogHead head;
   while (const auto line = lines.next()) {
-    if (line->find('\0') != std::string_view::npos) {
-      throw Error(
-          lines.path() +
-          ": is a binary file, which is not read: convert it to CSV by the recorder's tools");
-    }
-    if (!is_blank_or_comment(*line)) {
+    head.is_binary = line->find('\0') != std::string_view::npos;
+    if (head.is_binary || !is_blank_or_comment(*line)) {
       head.line = *line;
       lines.unread();
+      head.bytes = lines.preview();
       break;
     }
     if (head.comments.size() < kKeptComments) head.comments.emplace_back(*line);
@@ -40,6 +37,10 @@ LogHead read_head(LineReader& lines) {
 
 std::string first_line(LineReader& lines, const std::string& expected) {
   const LogHead head = read_head(lines);
+  if (head.is_binary) {
+    throw Error(lines.path() +
+                ": is a binary file, which is not read: convert it to CSV by the recorder's tools");
+  }
   if (!head.line.empty()) return head.line;
   const std::string what =
       lines.damage().empty() ? lines.path() + ": the file is empty" : lines.damage();

@@ -11,6 +11,7 @@
 #include "leeway/earth/names.hpp"
 #include "leeway/logs/line_reader.hpp"
 #include "leeway/logs/log_format.hpp"
+#include "lib/logs/messages/message_reader.hpp"
 #include "lib/logs/text_fields.hpp"
 
 namespace leeway {
@@ -19,6 +20,8 @@ namespace leeway {
 struct LogHead {
   std::vector<std::string> comments{};  ///< lines before the first that carries something
   std::string line{};                   ///< that one; empty in a log without any
+  bool is_binary{false};                ///< it is no line of text
+  std::string_view bytes{};             ///< from there on, some KiB; until the lines go on
 };
 
 /// The head of a log; next() then delivers its line again.
@@ -37,6 +40,7 @@ struct LogOpening {
   LineReader& lines;
   const LogFormat& format;
   std::vector<std::string>& notes;  ///< for the summary
+  Framing framing{};                ///< told by a layout of messages: it has no lines
 };
 
 /// One layout of a kind of log: a row of the table of its reader.
@@ -45,24 +49,32 @@ struct LogLayout {
   std::string_view name{};  ///< for users: "KF-GINS text"
   std::string expected{};   ///< what such a log has, for error messages
   bool (*sniff)(const LogOpening& log){};
-  /// Leaves the lines at the first row. @throws Error when the log lacks what the layout must have.
+  /// Leaves the lines at the first row; or tells the framing of messages, which the parser then
+  /// gets. @throws Error when the log lacks what the layout must have.
   RowParser<Row> (*parser)(LogOpening& log){};
+  bool is_binary{false};
 };
 
 /// The layout that the format names, or the last of the table that recognizes the head: the first
-/// of them must take anything.
-/// @throws Error when the table has none of that name.
+/// of them must take any text.
+/// @throws Error when the table has none of that name, or none for a binary file.
 template <class Row>
 const LogLayout<Row>& layout_of(const LogOpening& log, const std::vector<LogLayout<Row>>& layouts) {
   const std::string& wanted = log.format.layout;
   const auto found = std::find_if(layouts.rbegin(), layouts.rend(), [&](const auto& layout) {
-    return wanted.empty() ? layout.sniff(log) : is_same_name(layout.name, wanted);
+    if (!wanted.empty()) return is_same_name(layout.name, wanted);
+    return (layout.is_binary || !log.head.is_binary) && layout.sniff(log);
   });
   if (found != layouts.rend()) return *found;
   std::string known;
   for (const auto& layout : layouts)
     known += (known.empty() ? "" : ", ") + std::string(layout.name);
-  throw Error(log.lines.path() + ": no layout is named '" + wanted + "'; there are: " + known);
+  throw Error(log.lines.path() +
+              (wanted.empty()
+                   ? ": is a binary file of no layout that is read; convert it to CSV by "
+                     "the recorder's tools. There are: "
+                   : ": no layout is named '" + wanted + "'; there are: ") +
+              known);
 }
 
 /// "a, b, or c".

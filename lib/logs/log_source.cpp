@@ -30,6 +30,13 @@ std::string damage_message(const LineReader& lines, std::string_view line, const
          ": " + std::string(name(fault.reason)) + ": " + quoted(fault.text);
 }
 
+std::string damage_message(const MessageReader& messages, std::string_view message,
+                           const Fault& fault) {
+  const bool is_named = !fault.text.empty() && fault.text.data() != message.data();
+  return messages.path() + ": byte " + std::to_string(messages.offset()) + ": " +
+         std::string(name(fault.reason)) + (is_named ? ": " + std::string(fault.text) : "");
+}
+
 Time WeekUnroller::unroll(Time time_of_week) {
   const auto is_in_week = [](Time t) {
     return t.time_since_epoch() >= Duration{0} && t.time_since_epoch() <= kWeek;

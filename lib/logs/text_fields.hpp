@@ -15,15 +15,19 @@
 
 namespace leeway {
 
-/// A damaged field: `text` is a view into its line.
+/// A damaged field: `text` is a view into its line, or names the field of a message.
 struct Fault {
   LineDamage reason{};
   std::string_view text{};
   bool is_damage{true};
+  bool is_row{false};
 };
 
 /// A line that completes no row, and is as it should be.
 inline constexpr Fault kNoRow{.reason = {}, .text = {}, .is_damage = false};
+
+/// A row, and more of them in the same line: the parser is to be asked with it again.
+inline constexpr Fault kRowAndMore{.reason = {}, .text = {}, .is_damage = false, .is_row = true};
 
 enum class Separator {
   kComma,      ///< a field may be empty, blanks around it do not count
@@ -64,8 +68,8 @@ class LineParser {
   std::vector<Column> columns_;
 };
 
-/// Fills a row from a line, or tells what is wrong with it. At the end it is asked with an empty
-/// line for what it may still hold.
+/// Fills a row from a line or a message, or tells what is wrong with it. At the end it is asked
+/// with an empty line for what it may still hold.
 template <class Row>
 using RowParser = std::function<std::optional<Fault>(std::string_view line, Row& row)>;
 

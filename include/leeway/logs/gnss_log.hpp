@@ -1,5 +1,5 @@
 /// @file
-/// GNSS logs: a streaming reader of three layouts and the writer of one.
+/// GNSS logs: a streaming reader of many layouts and the writer of one.
 #pragma once
 
 #include <filesystem>
@@ -36,6 +36,11 @@ struct GnssLogOptions {
 ///   time is GPS time since 1980-01-06; UTC and JST are converted. Without a header, GPS time.
 ///   Velocities without standard deviations, or with zeros for them, are not used. Where the
 ///   printed correlations are rounded beyond a positive definite matrix, only its diagonal is used.
+/// - "u-blox UBX": NAV-PVT, with the place of NAV-HPPOSLLH where it is there. Accuracies of several
+///   axes together are shared evenly among them. What the receiver refuses itself is no fix.
+/// - "phone location": of Sensor Logger or phyphox; of a folder it is Location.csv.
+/// - "PX4 ULog": vehicle_gps_position, or sensor_gps in a log without it; times since the start of
+///   the system.
 ///
 /// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
 /// a latitude beyond +-90 deg or a longitude beyond +-360 deg. So does a standard deviation not in

@@ -15,7 +15,7 @@ namespace leeway {
 
 /// How an IMU log is read.
 struct ImuLogOptions {
-  RateMeaning meaning{RateMeaning::kPoint};           ///< of logs of rates
+  RateMeaning meaning{RateMeaning::kPoint};           ///< of CSV logs of rates
   Eigen::Matrix3d C_bs{Eigen::Matrix3d::Identity()};  ///< sensor axes to body axes
   LogFormat format{};
 };
@@ -28,6 +28,9 @@ struct ImuLogOptions {
 /// - "CSV, increments": t_s, dt_s, dtheta_x_rad .. dtheta_z_rad, dv_x_mps .. dv_z_mps: lossless.
 /// - "KF-GINS text": no header, blanks between: seconds of week, which count on past the end of the
 ///   week, dtheta xyz (rad), dv xyz (m/s).
+/// - "u-blox UBX": ESF-RAW or ESF-MEAS; times are told by the NAV-PVT among them, to some 0.05 s.
+/// - "PX4 ULog": sensor_combined, means of rates; times since the start of the system.
+/// - "phone folder": a folder of CSV files, one a sensor, of Sensor Logger or phyphox.
 ///
 /// A damaged line costs that line: one that cannot be parsed, with a number missing or not finite,
 /// an angular rate beyond 1e3 rad/s (or rad) or a specific force beyond 1e5 m/s^2 (or m/s). So does

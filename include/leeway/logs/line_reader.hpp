@@ -5,18 +5,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
-struct gzFile_s;  // zlib's, kept out of this header
+#include "leeway/logs/byte_reader.hpp"
 
 namespace leeway {
 
-/// Reader of a file line by line, without allocating for a line. Whether the file is gzip is told
-/// from its first bytes, not from its name. A UTF-8 byte order mark is skipped.
+/// Reader of a file line by line, without allocating for a line. A UTF-8 byte order mark is
+/// skipped.
 class LineReader {
  public:
   /// Longer lines are no text log: see overlong().
@@ -33,7 +32,10 @@ class LineReader {
   void unread();
 
   /// Text that next() has yet to deliver, as much as was read: some KiB unless the file is shorter.
-  std::string_view preview() const { return {buffer_.data() + begin_, end_ - begin_}; }
+  std::string_view preview() const { return bytes_.view(); }
+
+  /// The file, from what next() has yet to deliver on.
+  ByteReader&& take_bytes() && { return std::move(bytes_); }
 
   /// Whether the line just delivered was longer than kMaxLineBytes: its rest is skipped.
   bool overlong() const { return overlong_; }
@@ -41,33 +43,21 @@ class LineReader {
   /// Number of the line just delivered, from 1; 0 before the first.
   std::int64_t line_number() const { return line_number_; }
 
-  /// Empty, or why the file ended before its end (a cut or corrupt gzip stream, an I/O error). Of a
-  /// corrupt stream up to 32 KiB of good text before the damage may be lost.
-  const std::string& damage() const { return damage_; }
+  /// Empty, or why the file ended before its end: ByteReader::damage(), or a line without an end.
+  std::string damage() const;
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return bytes_.path(); }
 
  private:
-  struct Close {
-    void operator()(gzFile_s* file) const;
-  };
-
-  bool refill();
   void skip_rest_of_line();
-  std::string_view take(std::size_t line_end, std::size_t next_begin);
-  std::string damage_message(int code, const char* zlib_text) const;
+  std::string_view take(std::size_t line_size, std::size_t taken);
 
-  std::string path_;
-  std::unique_ptr<gzFile_s, Close> file_;
-  std::vector<char> buffer_;
-  std::size_t line_begin_{0};
-  std::size_t begin_{0};  // of the text not yet delivered
-  std::size_t end_{0};
+  ByteReader bytes_;
+  std::size_t taken_{0};  // with the line just delivered
   std::int64_t line_number_{0};
-  bool at_end_{false};
   bool overlong_{false};
   bool rest_to_skip_{false};
-  std::string damage_;
+  bool is_endless_{false};
 };
 
 }  // namespace leeway

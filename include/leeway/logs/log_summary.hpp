@@ -12,7 +12,7 @@
 
 namespace leeway {
 
-/// Reasons for which a line is not used.
+/// Reasons for which a line, or a message of a binary log, is not used.
 enum class LineDamage {
   kNotANumber,
   kMissingField,
@@ -23,11 +23,15 @@ enum class LineDamage {
   kOutOfRange,
   kTooLong,   ///< LineReader::kMaxLineBytes
   kChecksum,  ///< missing, or not that of the record
+  kCutShort,  ///< a message without its end
+  kLost,      ///< bytes of no message, where one must be
 };
 constexpr auto names(LineDamage) {
-  return std::array{"not a number",   "missing field", "not finite",
-                    "time goes back", "time repeated", "time jumps ahead of the lines after it",
-                    "out of range",   "line too long", "checksum does not match"};
+  return std::array{
+      "not a number",   "missing field",      "not finite",
+      "time goes back", "time repeated",      "time jumps ahead of the lines after it",
+      "out of range",   "line too long",      "checksum does not match",
+      "cut short",      "bytes of no message"};
 }
 inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 
@@ -36,7 +40,7 @@ inline constexpr std::size_t kLineDamageCount = kAll<LineDamage>.size();
 struct LogSummary {
   static constexpr std::size_t kMaxMessages = 10;
 
-  std::int64_t lines{0};    ///< that carry data: no header, comments, blank lines
+  std::int64_t lines{0};    ///< that carry data: no header, comments, blank lines; or messages
   std::int64_t records{0};  ///< delivered
   /// Lines whose time repeats that of the line before. What they hold, an increment, happened: it
   /// was added to the next record.

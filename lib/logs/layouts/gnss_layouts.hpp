@@ -19,9 +19,12 @@ namespace leeway {
 using GnssLayout = LogLayout<GnssFix>;
 
 GnssLayout gnss_csv();
+GnssLayout gnss_phone();
 GnssLayout gnss_kf_gins();
 GnssLayout rtklib_pos();
 GnssLayout nmea();
+GnssLayout gnss_ubx();
+GnssLayout gnss_ulog();
 
 /// The table of the layouts (gnss_log.cpp).
 const std::vector<GnssLayout>& gnss_layouts();

@@ -21,6 +21,7 @@ struct ImuRow {
   Eigen::Vector3d linear{Eigen::Vector3d::Zero()};   ///< specific force (m/s^2) or increment (m/s)
   double dt_s{};                                     ///< of an increment; 0: from the row before
   bool is_rate{false};
+  bool is_mean{false};  ///< the layout's rates are means, ending at time
 };
 
 /// Increments: rotation and velocity that happened. A lost rate costs little.
@@ -39,6 +40,8 @@ using ImuLayout = LogLayout<ImuRow>;
 ImuLayout imu_csv_rates();
 ImuLayout imu_csv_increments();
 ImuLayout imu_kf_gins();
+ImuLayout imu_ubx();
+ImuLayout imu_ulog();
 
 /// The table of the layouts (imu_log.cpp).
 const std::vector<ImuLayout>& imu_layouts();

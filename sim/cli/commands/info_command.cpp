@@ -29,8 +29,8 @@ std::string refusal(const Open& open) {
 
 /// Puts a file where it belongs: it may be of both sensors. @throws Error when it is of none.
 void place(const std::filesystem::path& file, sim::LogsToInspect& logs) {
-  if (!std::filesystem::is_regular_file(file)) {
-    throw Error(file.string() + ": is no file; info looks at logs as often as it needs");
+  if (!std::filesystem::is_regular_file(file) && !std::filesystem::is_directory(file)) {
+    throw Error(file.string() + ": is no file and no folder; info looks at logs more than once");
   }
   const std::string not_imu = refusal([&] { ImuLogReader(file, logs.imu_options); });
   const std::string not_gnss = refusal([&] { GnssLogReader(file, logs.gnss_options); });

@@ -14,8 +14,12 @@ void add_file_options(CLI::App& app, FuseLogs& logs) {
                                   const std::string& description) {
     add_file_option(app, "--" + name, path, description)->excludes(drive);
   };
-  file("imu", logs.files.imu, "IMU log: CSV of rates or increments, KF-GINS; plain or gzip");
-  file("gnss", logs.files.gnss, "GNSS log: CSV, KF-GINS, RTKLIB .pos; plain or gzip");
+  file("imu", logs.files.imu,
+       "IMU log: CSV of rates or increments, KF-GINS, u-blox UBX, PX4 ULog; plain or gzip; or the "
+       "folder of a phone's recording");
+  file("gnss", logs.files.gnss,
+       "GNSS log: CSV, KF-GINS, RTKLIB .pos, NMEA, u-blox UBX, PX4 ULog; plain or gzip; or the "
+       "folder of a phone's recording");
   for (std::size_t a = 0; a < kAidings.size(); ++a) {
     file(kAidings[a].name, logs.files.aidings[a],
          fmt::format("{}, CSV: t_s, {} and maybe {}", kAidings[a].log, kAidings[a].value_column,

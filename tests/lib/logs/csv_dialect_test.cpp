@@ -136,7 +136,20 @@ TEST_CASE("the unit of a time is told by its step, and a name that contradicts i
 }
 
 TEST_CASE("a binary file is refused as one") {
-  CHECK(contains(imu_refusal(std::string("ULog\x01\x12\x35\0\0", 9)), "is a binary file"));
+  CHECK(contains(imu_refusal(std::string("\x7F"
+                                         "ELF\x02\x01\x01\0\0",
+                                         9)),
+                 "is a binary file"));
+}
+
+// 2026-12-01: a column of the owner's choice beside one with a name that means the same.
+TEST_CASE("a column that its owner names counts before another of the same meaning") {
+  const TempDir dir;
+  const auto path = dir.file("imu.csv",
+                             "time,stamp,gx,gy,gz,ax,ay,az\n0,10,0,0,0,0,0,1\n"
+                             "1,11,0,0,0,0,0,1\n");
+  ImuLogReader reader(path, {.format = {.time_unit = "s", .columns = {{"t", "stamp"}}}});
+  CHECK(reader.next()->time == time_from_seconds(11.0));
 }
 
 TEST_CASE("linear acceleration, without gravity, is refused with the remedy") {

@@ -61,6 +61,24 @@ TEST_CASE("rates become increments over the time from the line before") {
   CHECK(first(RateMeaning::kPoint).dv_b_mps == Eigen::Vector3d::Zero());
 }
 
+TEST_CASE("a second session in the file is told, and not taken for the end of the first") {
+  const TempDir dir;
+  const auto session = [](int from_s, int to_s) {
+    std::string rows;
+    for (int t = from_s; t <= to_s; ++t) rows += std::to_string(t) + ",1,2,3,4,5,6\n";
+    return rows;
+  };
+  ImuLogReader reader(
+      dir.file("imu.csv", kRatesHeader + session(0, 100) + kRatesHeader + session(50, 200)));
+  CHECK(all(reader).back().time == time_from_seconds(100.0));
+  CHECK(contains(reader.summary().incomplete, "a second session begins at line 104"));
+  // A late batch of samples is none.
+  ImuLogReader late(
+      dir.file("late.csv", kRatesHeader + session(0, 100) + session(90, 99) + session(101, 200)));
+  CHECK(all(late).back().time == time_from_seconds(200.0));
+  CHECK(late.summary().incomplete.empty());
+}
+
 TEST_CASE("columns are found by name, in any order, among others") {
   const TempDir dir;
   ImuLogReader reader(
