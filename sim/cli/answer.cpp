@@ -1,6 +1,6 @@
 #include "sim/cli/answer.hpp"
 
-#include "sim/cli/output_files.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/pages/report.hpp"
 
 namespace leeway::cli {

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
-#include "sim/cli/output_files.hpp"
+#include "sim/cli/files/output_files.hpp"
 
 namespace leeway::cli {
 

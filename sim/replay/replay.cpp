@@ -97,7 +97,7 @@ class Replay {
         output_interval_(duration_from_seconds(1.0 / input.solution_rate_hz)),
         looks_(input) {
     if (!input.truth.empty()) reference_.emplace(input);
-    if (!input.solution.empty()) writer_.emplace(input.solution);
+    if (!input.solution.empty()) writer_.emplace(input.solution, input.solution_form);
     if (input.start) navigator_.start(input.start->estimate, input.start->P);
     for (const Outage& outage : input.outages) result_.outages.push_back({outage});
     for (std::size_t a = 0; a < kAidings.size(); ++a) {

@@ -48,6 +48,39 @@ std::string range_text(const Range& limits, double value, double si) {
                      limits.high / si);
 }
 
+/// The place after the text in quotes, or the comment, that begins at `at`.
+std::size_t end_of_words(std::string_view text, std::size_t at) {
+  const char opening = text[at];
+  const std::string_view thrice = text.substr(at, 3);
+  if (opening != '#' && thrice == std::string(3, opening)) {
+    const std::size_t end = text.find(thrice, at + 3);
+    return end == std::string_view::npos ? text.size() : end + 3;
+  }
+  for (++at; at < text.size() && text[at] != '\n'; ++at) {
+    if (opening == '"' && text[at] == '\\') {
+      ++at;
+    } else if (opening != '#' && text[at] == opening) {
+      return at + 1;
+    }
+  }
+  return at;
+}
+
+/// The place of a dotted key of more parts than any scene has; npos: there is none. The parser
+/// nests as deep as a key has parts, and runs out of stack.
+std::size_t find_deep_key(std::string_view text) {
+  constexpr int kMostParts = 32;
+  int parts = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '.' && ++parts > kMostParts) return at;
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) parts = 1;
+    at = std::string_view("\"'#").find(c) != std::string_view::npos ? end_of_words(text, at)
+                                                                    : at + 1;
+  }
+  return std::string_view::npos;
+}
+
 }  // namespace
 
 std::string likely_intent(const std::vector<std::string>& quoted_keys) {
@@ -255,23 +288,14 @@ TomlDocument TomlDocument::from_file(const std::filesystem::path& path) {
   return from_text(text.str(), path.string());
 }
 
-/// Refuses keys of so many parts that the parser, which calls itself for each, would run out of
-/// stack. Strings over several lines are not told apart: no text has so many dots in a line.
-void TomlDocument::refuse_deep_keys(std::string_view text) const {
-  constexpr std::ptrdiff_t kMostParts = 256;
-  for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view key = text.substr(0, std::min(end, text.find_first_of("=\"'#")));
-    if (std::count(key.begin(), key.end(), '.') > kMostParts) {
-      throw Error(fmt::format("{}:{}: a key of more than {} parts", name_, line, kMostParts));
-    }
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-}
-
 TomlDocument TomlDocument::from_text(std::string_view text, std::string name) {
   TomlDocument document(std::move(name));
-  document.refuse_deep_keys(text);
+  if (const std::size_t at = find_deep_key(text); at != std::string_view::npos) {
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    throw Error(fmt::format("{}:{}: a key of more than 32 parts with dots between; shorten it",
+                            document.name_, line));
+  }
   try {
     document.root_ = toml::parse(text, document.name_);
   } catch (const toml::parse_error& error) {

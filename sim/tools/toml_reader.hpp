@@ -150,7 +150,6 @@ class TomlDocument {
 
  private:
   explicit TomlDocument(std::string name) : name_(std::move(name)) {}
-  void refuse_deep_keys(std::string_view text) const;
 
   std::string name_;
   toml::table root_{};

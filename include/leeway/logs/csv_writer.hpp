@@ -11,9 +11,9 @@
 
 #include "leeway/earth/time.hpp"
 
-struct gzFile_s;  // zlib's, kept out of this header
-
 namespace leeway {
+
+class TextFile;
 
 /// A column and how its numbers are written.
 struct CsvColumn {
@@ -47,19 +47,8 @@ class CsvWriter {
   void close();
 
  private:
-  struct Close {
-    void operator()(gzFile_s* file) const;
-  };
-
-  void flush();
-  [[noreturn]] void fail(const std::string& doing, int error) const;
-
-  std::filesystem::path path_;
-  std::filesystem::path partial_;
-  std::unique_ptr<gzFile_s, Close> file_;
-  std::vector<int> decimals_;
-  std::vector<char> buffer_;
-  std::size_t used_{0};
+  std::unique_ptr<TextFile> file_;
+  std::vector<int> decimals_{};
 };
 
 }  // namespace leeway

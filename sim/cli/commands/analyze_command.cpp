@@ -4,7 +4,7 @@
 #include "leeway/sim/analysis/coast.hpp"
 #include "leeway/sim/analysis/covariance_analysis.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/output_files.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/pages/series_table.hpp"
 #include "sim/cli/scene_options.hpp"
 #include "sim/cli/tables/coast_tables.hpp"

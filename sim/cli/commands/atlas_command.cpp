@@ -1,6 +1,6 @@
 #include "sim/cli/command.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output_files.hpp"
 #include "sim/cli/tables/atlas_tables.hpp"
 #include "sim/cli/tables/fault_tables.hpp"
 #include "sim/cli/tables/mismatch_tables.hpp"

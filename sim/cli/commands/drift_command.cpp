@@ -2,7 +2,7 @@
 
 #include "leeway/sim/trials/drift.hpp"
 #include "sim/cli/command.hpp"
-#include "sim/cli/output_files.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/pages/series_table.hpp"
 
 namespace leeway::cli {

@@ -1,5 +1,5 @@
 #include "sim/cli/command.hpp"
-#include "sim/cli/output_files.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/pages/fuse_series.hpp"
 #include "sim/cli/tables/fuse_tables.hpp"
 
@@ -68,9 +68,24 @@ void add_solution_options(CLI::App& app, FuseOptions& options) {
   add_file_option(app, "--outages", options.logs.outages,
                   "JSON [{\"start_s\": .., \"duration_s\": ..}, ..]: each is withheld alone")
       ->excludes(app.get_option("--drive"));
-  add_output_file(app, "--out", files.solution,
-                  "write the solution as CSV; gzip when it ends in .gz")
-      ->excludes(app.get_option("--drive"));
+  CLI::Option* out =
+      add_output_file(app, "--out", files.solution,
+                      "write the solution: .pos (RTKLIB), .tum, .kml, .gpx, .geojson, or else as "
+                      "CSV; gzip when .gz comes after it")
+          ->excludes(app.get_option("--drive"));
+  app.add_option("--out-format", files.solution_form.format,
+                 "csv, pos, tum, kml, gpx or geojson, whatever the ending of --out")
+      ->type_name("NAME")
+      ->needs(out);
+  app.add_option("--out-columns", files.solution_form.columns,
+                 "columns of a CSV after t_s; also east_m, north_m, up_m")
+      ->delimiter(',')
+      ->type_name("NAME,..")
+      ->needs(out);
+  add_numbers<3>(app, "--origin", "LAT,LON,H", options.logs.origin,
+                 "where east_m, north_m, up_m and .tum are zero, deg, m; without it at the first "
+                 "position written")
+      ->needs(out);
   add_default_option(app, "--out-rate-hz", files.solution_rate_hz,
                      "solution epochs per second, in the file and in the RMS errors")
       ->check(in_range(1e-3, 1e4));

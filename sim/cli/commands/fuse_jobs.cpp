@@ -1,5 +1,6 @@
 #include "sim/cli/commands/fuse_jobs.hpp"
 
+#include <cmath>
 #include <fstream>
 
 #include "leeway/earth/rotation.hpp"
@@ -66,8 +67,23 @@ void set_truth_window(sim::ReplayInput& input, const Eigen::Vector2d& window_s) 
   input.truth_to_s = window_s.y();
 }
 
+void set_solution_form(sim::ReplayInput& input, const std::optional<Eigen::Vector3d>& origin) {
+  if (origin) {
+    if (std::abs(origin->x()) > 90.0 || std::abs(origin->y()) > 360.0 ||
+        std::abs(origin->z()) > 1e5) {
+      throw Error(fmt::format(
+          "--origin {:g},{:g},{:g}: LAT must be from -90 to 90 deg, LON from -360 to 360 deg, H "
+          "from -100000 to 100000 m",
+          origin->x(), origin->y(), origin->z()));
+    }
+    input.solution_form.origin = {origin->x() * kRadPerDeg, origin->y() * kRadPerDeg, origin->z()};
+  }
+  require_solution_form(input.solution, input.solution_form);
+}
+
 FuseJob job_of_logs(const FuseLogs& logs) {
   FuseJob job = job_with_options(logs);
+  set_solution_form(job.input, logs.origin);
   job.mount_rpy_deg = logs.mount_rpy_deg;
   if (logs.truth_window_s) set_truth_window(job.input, *logs.truth_window_s);
   if (!logs.outages.empty()) job.input.outages = sim::read_outages(logs.outages);

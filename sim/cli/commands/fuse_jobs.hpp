@@ -17,6 +17,7 @@ struct FuseLogs {
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
   std::string mount_axes{"flu"};
   std::optional<Eigen::Vector2d> gnss_sigma_scale{};  ///< of position, of velocity
+  std::optional<Eigen::Vector3d> origin{};            ///< deg, deg, m
   std::optional<double> start_heading_deg{};
   double start_heading_sigma_deg{5.0};
   LogForm form{};

@@ -3,8 +3,8 @@
 #include "leeway/sim/reduce/model_reduction.hpp"
 #include "leeway/sim/scene/filter_file.hpp"
 #include "sim/cli/command.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output_files.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {

@@ -5,8 +5,8 @@
 #include "leeway/sim/scene/receiver.hpp"
 #include "leeway/sim/sensors/imu_simulator.hpp"
 #include "sim/cli/command.hpp"
+#include "sim/cli/files/output_files.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/cli/output_files.hpp"
 #include "sim/cli/scene_options.hpp"
 
 namespace leeway::cli {

@@ -54,7 +54,7 @@ TEST_CASE("a damaged line costs that line") {
 
 TEST_CASE("a log of something else is refused, naming the column") {
   const TempDir dir;
-  const auto path = dir.file("kmh.csv", "t_s,speed_kmh\n0,3\n");
+  const auto path = dir.file("log.csv", "t_s,temperature\n0,3\n");
   const std::string message = test::message_of<Error>([&] { ScalarLogReader(path, kSpeed); });
   CHECK(contains(message, path.string()));
   CHECK(contains(message, "missing columns speed_mps"));

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "leeway/earth/error.hpp"
+#include "leeway/logs/gnss_log.hpp"
 #include "leeway/logs/line_reader.hpp"
 #include "tests/support/near.hpp"
 #include "tests/support/temp_dir.hpp"
@@ -116,6 +119,91 @@ TEST_CASE("a solution without a fix has no nis") {
   const auto row = first_row(dir / "solution.csv.gz");
   CHECK(std::isnan(row.at("nis")));
   CHECK(row.at("nis_dof") == 0.0);
+}
+
+/// A place on the equator with the vehicle's nose to the east, in week 2395 of GPS.
+Solution on_the_equator(double lon_deg) {
+  NavStateNed ned;
+  ned.time = time_from_gps(2395, 172800.25);
+  ned.position = {0.0, lon_deg * kRadPerDeg, 100.0};
+  ned.v_n_mps = {0.0, 10.0, -1.0};
+  ned.attitude = {0.0, 0.0, 90.0 * kRadPerDeg};
+  Solution solution;
+  solution.nav = nav_state_from_ned(ned);
+  solution.sigma_position_n_m = {1.0, 2.0, 3.0};
+  solution.sigma_velocity_n_mps = {0.1, 0.2, 0.3};
+  return solution;
+}
+
+std::string written(const std::string& name, const SolutionForm& form = {}) {
+  const TempDir dir;
+  SolutionWriter writer(dir / name, form);
+  writer.write(on_the_equator(7.0));
+  writer.write(on_the_equator(7.001));
+  writer.close();
+  std::string text;
+  LineReader lines(dir / name);
+  while (const auto line = lines.next()) text.append(*line).append("\n");
+  return text;
+}
+
+TEST_CASE("a solution as RTKLIB .pos is read back as fixes") {
+  const TempDir dir;
+  const Solution solution = on_the_equator(7.0);
+  SolutionWriter writer(dir / "a.pos.gz");
+  writer.write(solution);
+  writer.close();
+  GnssLogReader log(dir / "a.pos.gz");
+  const auto fix = log.next();
+  REQUIRE(fix);
+  CHECK(fix->time == solution.nav.time);
+  CHECK(near(fix->position->r_e_m, solution.nav.r_e_m, 1e-5));      // 11 um a digit
+  CHECK(near(fix->velocity->v_e_mps, solution.nav.v_e_mps, 1e-5));  // 10 um/s a digit
+}
+
+TEST_CASE("a solution as TUM is about its first position, body axes to east, north, up") {
+  // Forward is east, right is south, down is against up: half a turn about the first axis.
+  const std::string text = written("a.tum");
+  CHECK(text.find(" 0.00000 0.00000 0.00000 ") != std::string::npos);
+  double t = 0.0, x = 0.0, y = 0.0, z = 0.0, qx = 0.0, qy = 0.0, qz = 0.0, qw = 0.0;
+  const std::size_t second = text.find('\n') + 1;
+  REQUIRE(std::sscanf(text.c_str() + second, "%lf %lf %lf %lf %lf %lf %lf %lf", &t, &x, &y, &z, &qx,
+                      &qy, &qz, &qw) == 8);
+  const double angle = 0.001 * kRadPerDeg;  // along a circle of the equator's radius and height
+  const double radius_m = wgs84::kSemiMajorAxisM + 100.0;
+  CHECK(near(x, radius_m * std::sin(angle), 1e-5));  // m: a digit
+  CHECK(near(y, 0.0, 1e-5));
+  CHECK(near(z, radius_m * (std::cos(angle) - 1.0), 1e-5));
+  // The axes of the first place have turned by the angle, half of which is 8.7e-6 in the
+  // quaternion.
+  CHECK(near(std::abs(qx), 1.0, 1e-5));
+  CHECK(near(std::hypot(qy, qz, qw), 0.0, 1e-5));
+}
+
+TEST_CASE("maps get longitude, latitude and height; GPX the time in UTC") {
+  const std::string place = "7.0000000000,0.0000000000,100.000";
+  CHECK(written("a.kml").find(place) != std::string::npos);
+  CHECK(written("a.geojson").find("[" + place + "],\n[7.001") != std::string::npos);
+  const std::string gpx = written("a.gpx");
+  CHECK(gpx.find("lat=\"0.0000000000\" lon=\"7.0000000000\"><ele>100.000<") != std::string::npos);
+  // date -u -d '1980-01-06 + 2395 weeks + 172800 s - 18 s'
+  CHECK(gpx.find("<time>2025-12-01T23:59:42.250Z</time>") != std::string::npos);
+}
+
+TEST_CASE("columns of a solution are chosen, east, north and up about a place given") {
+  const Geodetic origin{0.0, 7.0 * kRadPerDeg, 90.0};
+  const std::string text = written("a.txt", {"csv", {"up_m", "t_s", "yaw_deg"}, origin});
+  CHECK(text.starts_with("t_s,up_m,yaw_deg\n1448668800.25,10.00000,90.0000000\n"));
+}
+
+TEST_CASE("forms of a solution that are none are refused, with what there is") {
+  const auto refusal = [](const char* name, const SolutionForm& form) {
+    return test::message_of<Error>([&] { require_solution_form(name, form); });
+  };
+  CHECK(test::contains(refusal("a.csv", {"kmz", {}, {}}), "'kmz'; choose one of csv, pos, tum"));
+  CHECK(test::contains(refusal("a.csv", {{}, {"yaw"}, {}}), "'yaw'; choose from t_s, lat_deg"));
+  CHECK(test::contains(refusal("a.kml.gz", {{}, {"yaw_deg"}, {}}), "this is kml; leave"));
+  CHECK(refusal("a.kml", {"csv", {"yaw_deg"}, {}}).empty());
 }
 
 }  // namespace

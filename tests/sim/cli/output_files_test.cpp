@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include <string>
+#include <vector>
 
 #include "tests/sim/cli/program.hpp"
 #include "tests/sim/cli/simulated.hpp"
@@ -55,6 +56,31 @@ TEST_CASE("a signal leaves no part of a file") {
     const Outcome outcome = leeway(words, std::string("timeout -s ") + signal + " 1 ");
     CHECK(outcome.exit_code != 0);
     CHECK(std::filesystem::is_empty(dir / ""));
+  }
+}
+
+TEST_CASE("a solution is written in the form that its ending, or --out-format, names") {
+  const TempDir dir;
+  struct Case {
+    std::string words, begins;
+  };
+  const std::vector<Case> cases{
+      {"a.pos", "% program"},
+      {"a.kml", "<?xml"},
+      {"a.geojson", "{\"type\""},
+      {"a.txt --out-format gpx", "<?xml"},
+      {"a.csv --out-columns yaw_deg,up_m --origin 56,92.8,0", "t_s,yaw_deg,up_m\n"}};
+  for (const Case& c : cases) {
+    CAPTURE(c.words);
+    const std::string file = c.words.substr(0, c.words.find(' '));
+    CHECK(leeway(simulated().fuse() + " --out " + (dir / c.words).string()).exit_code == 0);
+    CHECK(read_file(dir / file).starts_with(c.begins));
+  }
+  const std::string out = simulated().fuse() + " --out " + (dir / "b.csv").string();
+  for (const char* wrong : {" --out-format kmz", " --out-columns yaw", " --origin 91,0,0"}) {
+    const Outcome outcome = leeway(out + wrong);
+    CHECK(outcome.exit_code == 1);
+    CHECK_FALSE(std::filesystem::exists(dir / "b.csv"));
   }
 }
 

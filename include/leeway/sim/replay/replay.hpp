@@ -15,6 +15,7 @@
 #include "leeway/logs/gnss_log.hpp"
 #include "leeway/logs/imu_log.hpp"
 #include "leeway/logs/scalar_log.hpp"
+#include "leeway/logs/solution_writer.hpp"
 #include "leeway/logs/truth_log.hpp"
 #include "leeway/navigator/aidings.hpp"
 #include "leeway/navigator/navigator.hpp"
@@ -39,6 +40,7 @@ struct ReplayInput {
   AidingLogs aidings{};
   std::filesystem::path truth{};     ///< empty: errors against withheld fixes
   std::filesystem::path solution{};  ///< empty: none is written
+  SolutionForm solution_form{};
   ImuLogOptions imu_options{};
   GnssLogOptions gnss_options{};
   std::vector<Outage> outages{};

@@ -1,4 +1,4 @@
-#include "sim/cli/output_files.hpp"
+#include "sim/cli/files/output_files.hpp"
 
 #include <signal.h>
 #include <unistd.h>
