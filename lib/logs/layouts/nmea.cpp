@@ -8,7 +8,7 @@
 
 #include "leeway/earth/error.hpp"
 #include "leeway/earth/rotation.hpp"
-#include "lib/logs/calendar.hpp"
+#include "lib/earth/calendar.hpp"
 #include "lib/logs/layouts/gnss_layouts.hpp"
 
 namespace leeway {

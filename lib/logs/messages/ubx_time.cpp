@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "lib/logs/calendar.hpp"
+#include "lib/earth/calendar.hpp"
 #include "lib/logs/messages/little_endian.hpp"
 
 namespace leeway {

@@ -1,6 +1,6 @@
 #include <chrono>
 
-#include "lib/logs/calendar.hpp"
+#include "lib/earth/calendar.hpp"
 #include "lib/logs/solutions/solution_formats.hpp"
 
 namespace leeway {

@@ -1,4 +1,4 @@
-#include "lib/logs/calendar.hpp"
+#include "lib/earth/calendar.hpp"
 
 #include <algorithm>
 #include <array>

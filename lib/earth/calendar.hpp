@@ -1,5 +1,5 @@
 /// @file
-/// Dates of logs as GPS time. Private to the log readers.
+/// Dates as GPS time. Private to the library.
 #pragma once
 
 #include <optional>
