@@ -205,7 +205,7 @@ void CsvHeader::settle_time_unit(std::string_view rows, double slowest_s,
                 ", or --time-unit s if they are right");
   }
   columns_[at].scale = std::pow(1e-3, static_cast<double>(unit));
-  notes.push_back("times are taken to be in " + std::string(kTimeUnits[unit]) +
+  notes.emplace_back("times are taken to be in " + std::string(kTimeUnits[unit]) +
                   ", by their step of " + to_text(median(steps)) + " in column " + titles_[at] +
                   "; if not, say --time-unit");
 }
@@ -219,9 +219,9 @@ void CsvHeader::note(std::vector<std::string>& notes) const {
     list += (list.empty() ? "" : ", ") + titles_[k];
     if (is_used) list += " as " + names_[k];
   }
-  if (!unused.empty()) notes.push_back("columns not used: " + unused);
+  if (!unused.empty()) notes.emplace_back("columns not used: " + unused);
   if (!silent.empty()) {
-    notes.push_back("columns that name no unit: " + silent +
+    notes.emplace_back("columns that name no unit: " + silent +
                     "; if another, say --gyro-unit or --accel-unit");
   }
 }

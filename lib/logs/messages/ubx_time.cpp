@@ -41,7 +41,7 @@ bool has_ubx_kind(const LogOpening& log, UbxKind kind) {
 UbxWeek::UbxWeek(LogOpening& log)
     : has_week_(has_ubx_kind(log, UbxKind::kNavPvt) || has_ubx_kind(log, UbxKind::kNavTimeGps)) {
   if (has_week_) return;
-  log.notes.push_back("no NAV-PVT or NAV-TIMEGPS tells the week: times are those of the week");
+  log.notes.emplace_back("no NAV-PVT or NAV-TIMEGPS tells the week: times are those of the week");
 }
 
 void UbxWeek::learn(UbxKind kind, std::string_view payload) {
