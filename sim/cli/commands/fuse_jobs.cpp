@@ -225,6 +225,7 @@ std::vector<FuseJob> fuse_jobs(const FuseOptions& options) {
           "give --mount");
     }
     job.input.taken_care_of = taken_care_of(options, job);
+    job.align_speed_mps = options.alignment.min_speed_mps;
     inspect(job);
     if (job.is_time_offset_to_find) find_time_offset(job);
   }

@@ -48,6 +48,7 @@ struct FuseJob {
   std::optional<Eigen::Vector3d> mount_rpy_deg{};
   bool estimates_mount{false};
   bool is_time_offset_to_find{false};
+  double align_speed_mps{};  ///< from which the course is the heading
   std::string imu_format{};
   std::string gnss_format{};
   sim::ReplayInput input{};

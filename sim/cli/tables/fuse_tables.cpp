@@ -49,13 +49,26 @@ void print_inputs(const FuseJob& job) {
   table.print();
 }
 
-const char* why_no_solution(const sim::ReplayResult& r) {
+/// The reason, and what mends it.
+std::string why_no_solution(const FuseJob& job) {
+  const sim::ReplayResult& r = job.result;
+  const sim::FixFigures& gnss = r.look.gnss;
   if (r.is_refused) return "the logs are certainly wrong: see the warnings, or --as-is";
-  return r.fixes_in_span == 0
-             ? "no fix falls into the time of the IMU data, so never aligned; t_s of both logs "
-               "must "
-               "count from the same moment"
-             : "never moved with a usable course, so never aligned (see --align-speed-mps)";
+  if (r.fixes_in_span == 0) {
+    return "no fix falls into the time of the IMU data, so never aligned; times of both logs must "
+           "count from the same moment";
+  }
+  const std::string known = "; --start-heading-deg, where it is known, needs no motion";
+  if (gnss.fastest_mps < job.align_speed_mps) {
+    return fmt::format(
+        "never aligned: the fastest of {} fixes is {:.2g} m/s, and the course is taken for the "
+        "heading from {:g} m/s on: --align-speed-mps{}",
+        gnss.time.records, gnss.fastest_mps, job.align_speed_mps, known);
+  }
+  return fmt::format(
+      "never aligned: no course of the {} fixes ({} with velocity, every {:.3g} s, up to {:.3g} "
+      "m/s) was sure enough and kept by the gyros{}",
+      gnss.time.records, gnss.with_velocity, gnss.time.step_s, gnss.fastest_mps, known);
 }
 
 void print_run(const FuseJob& job) {
@@ -64,7 +77,7 @@ void print_run(const FuseJob& job) {
   if (r.has_solution) {
     fmt::print("\nSolution from {:.3f} to {:.3f} s\n", r.first_solution_s, r.last_solution_s);
   } else {
-    fmt::print("\nNo solution: {}\n", why_no_solution(r));
+    fmt::print("\nNo solution: {}\n", why_no_solution(job));
   }
   if (r.is_refused) return;
   Table verdicts({"<verdict", "inputs"});
@@ -131,6 +144,14 @@ void print_outages(const std::vector<FuseJob>& jobs) {
     for (const sim::OutageResult& r : job.result.outages) add_row(table, outage_row(job, r));
   }
   table.print();
+}
+
+/// The gate counts what sensors beside the receiver read too.
+const char* what_is_gated(const FuseJob& job) {
+  const auto& aidings = job.input.aidings;
+  const bool is_aided =
+      std::any_of(aidings.begin(), aidings.end(), [](const auto& path) { return !path.empty(); });
+  return is_aided ? "measurements (fixes, or readings of other sensors)" : "fixes";
 }
 
 void warn_of_clock(const Health& health, const std::string& where) {
@@ -285,13 +306,13 @@ void warn(const FuseJob& job) {
     spdlog::warn("{}the mount was not found: that takes 3 s straight on at more than 5 m/s", where);
   }
   if (const auto n = count(r, Verdict::kGated); n > 0) {
-    spdlog::warn("{}{} fixes were refused by the gate", where, n);
+    spdlog::warn("{}{} {} were refused by the gate", where, n, what_is_gated(job));
   }
   if (const auto n = count(r, Verdict::kPartly); n > 0) {
     spdlog::warn("{}of {} fixes the gate refused the position or the velocity", where, n);
   }
   if (r.health.clock_offset_detected) warn_of_clock(r.health, where);
-  if (!r.has_solution) spdlog::warn("{}no solution: {}", where, why_no_solution(r));
+  if (!r.has_solution) spdlog::warn("{}no solution: {}", where, why_no_solution(job));
   constexpr double kUpsideDownDeg = 90.0;
   if (std::abs(r.final_roll_deg) > kUpsideDownDeg) {
     spdlog::warn(

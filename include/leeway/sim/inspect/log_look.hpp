@@ -35,7 +35,7 @@ struct TimeFigures {
   double last_s{kUnseen};
   double step_s{kUnseen};    ///< the usual time between two records, the median of the first 1000
   double jitter_s{kUnseen};  ///< root mean square of the steps about it, gaps and bursts aside
-  std::int64_t gaps{0};       ///< steps above 1.5 of it
+  std::int64_t gaps{0};      ///< steps above 1.5 of it
   double longest_gap_s{0.0};
   std::int64_t bursts{0};    ///< steps below half of it
   std::int64_t sessions{1};  ///< parted by a minute without a record
@@ -60,8 +60,9 @@ struct ImuFigures {
 struct FixFigures {
   TimeFigures time{};
   std::int64_t with_velocity{0};
-  std::int64_t repeated{0};         ///< that repeat the one before to the bit
-  std::int64_t zeros{0};            ///< at 0 deg, 0 deg
+  std::int64_t repeated{0};        ///< that repeat the one before to the bit
+  std::int64_t zeros{0};           ///< at 0 deg, 0 deg
+  double fastest_mps{0.0};         ///< horizontally, by velocities or else by positions
   double claimed_h_m{kUnseen};     ///< mean standard deviation of an axis, horizontal
   double scatter_h_m{kUnseen};     ///< of an axis, from one fix to the next, motion taken out
   double wander_h_m{kUnseen};      ///< the same over ten seconds
@@ -75,7 +76,7 @@ struct SharedFigures {
   double clock_offset_s{kUnseen};  ///< to be added to GNSS times
   double clock_offset_sigma_s{kUnseen};
   double turn_correlation{0.0};  ///< at that offset, signed
-  double turn_ratio{kUnseen};   ///< turn of the course over that of the gyros, about down
+  double turn_ratio{kUnseen};    ///< turn of the course over that of the gyros, about down
   double turn_ratio_sigma{kUnseen};
   double antenna_lead_m{kUnseen};  ///< ahead of the point that does not slide sideways
   double odometer_ratio{kUnseen};  ///< odometer over GNSS speed
