@@ -9,36 +9,10 @@
 #include "sim/inspect/imu_scan.hpp"
 #include "sim/inspect/own_velocity.hpp"
 #include "sim/inspect/shared_turns.hpp"
+#include "sim/inspect/speed_ratio.hpp"
 
 namespace leeway::sim {
 namespace {
-
-constexpr double kSameTimeS = 0.3;
-constexpr double kMovingMps = 3.0;
-constexpr int kFewSpeeds = 10;
-
-/// An odometer's speed over the receiver's.
-class SpeedRatio {
- public:
-  void add(const OdometerSpeed& speed) { last_ = speed; }
-
-  void add(const GnssFix& fix) {
-    if (!last_ || !fix.velocity || to_seconds(fix.time - last_->time) > kSameTimeS) return;
-    const double speed_mps = fix.velocity->v_e_mps.norm();
-    if (speed_mps < kMovingMps) return;
-    across_ += speed_mps * std::abs(last_->speed_mps);
-    square_ += speed_mps * speed_mps;
-    ++count_;
-  }
-
-  double ratio() const { return count_ < kFewSpeeds ? kUnseen : across_ / square_; }
-
- private:
-  std::optional<OdometerSpeed> last_{};
-  double across_{0.0};
-  double square_{0.0};
-  int count_{0};
-};
 
 /// The clocks' offset: what the turns say, with the receiver's own lag taken out.
 void set_clock_offset(SharedFigures& shared, const TurnMatch& turns, const FixFigures& gnss) {

@@ -24,7 +24,7 @@ struct TurnMatch {
   double ratio{kUnseen};  ///< turn of the course over that of the gyros, at that offset
   double ratio_sigma{kUnseen};
   double correlation{0.0};  ///< at that offset, signed
-  double lead_m{kUnseen};  ///< antenna ahead of the point that does not slide sideways
+  double lead_m{kUnseen};   ///< antenna ahead of the point that does not slide sideways
 };
 
 /// The two logs side by side, an increment and a fix after the other.
