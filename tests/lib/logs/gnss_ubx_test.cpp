@@ -45,29 +45,29 @@ Bytes pvt(std::uint32_t after_noon_ms) {
 
 std::string pvt_message(const Bytes& payload) { return ubx_message(0x01, 0x07, payload.text()); }
 
-struct ReadFixes {
+struct UbxFixes {
   std::vector<GnssFix> fixes{};
   LogSummary summary{};
 };
 
-ReadFixes read_file(const std::filesystem::path& path) {
+UbxFixes fixes_of_file(const std::filesystem::path& path) {
   GnssLogReader reader(path);
   CHECK(reader.layout() == "u-blox UBX");
-  ReadFixes read;
+  UbxFixes read;
   while (const auto fix = reader.next()) read.fixes.push_back(*fix);
   read.summary = reader.summary();
   return read;
 }
 
-ReadFixes read_bytes(const std::string& bytes) {
+UbxFixes fixes_of_bytes(const std::string& bytes) {
   const TempDir dir;
-  const ReadFixes read = read_file(dir.file("log.ubx", bytes));
-  CHECK(read_file(dir.gzip_file("log.bin", bytes)).fixes.size() == read.fixes.size());
+  const UbxFixes read = fixes_of_file(dir.file("log.ubx", bytes));
+  CHECK(fixes_of_file(dir.gzip_file("log.bin", bytes)).fixes.size() == read.fixes.size());
   return read;
 }
 
 TEST_CASE("UBX: place, velocity and accuracies of NAV-PVT") {
-  const ReadFixes read = read_bytes(pvt_message(pvt(250)));
+  const UbxFixes read = fixes_of_bytes(pvt_message(pvt(250)));
   CHECK(read.summary.clean());
   REQUIRE(read.fixes.size() == 1);
   const GnssFix& fix = read.fixes[0];
@@ -89,11 +89,12 @@ TEST_CASE("UBX: place, velocity and accuracies of NAV-PVT") {
 TEST_CASE("UBX: the time of day gives the nanoseconds, the time of week the leap seconds") {
   Bytes p = pvt(0);
   p.set<std::int32_t>(16, -123'456);  // the receiver rounds the time of week to ms
-  CHECK(read_bytes(pvt_message(p)).fixes.at(0).time ==
+  CHECK(fixes_of_bytes(pvt_message(p)).fixes.at(0).time ==
         time_from_gps(2381, kNoonMs / 1e3) - Duration{123'456});
   p = pvt(1000);
   p.set<std::uint8_t>(10, 44);  // a receiver that has yet to hear of two leap seconds
-  CHECK(read_bytes(pvt_message(p)).fixes.at(0).time == time_from_gps(2381, kNoonMs / 1e3 + 1.0));
+  CHECK(fixes_of_bytes(pvt_message(p)).fixes.at(0).time ==
+        time_from_gps(2381, kNoonMs / 1e3 + 1.0));
 }
 
 TEST_CASE("UBX: NAV-HPPOSLLH is the place of its epoch, NAV-PVT says when and how fast") {
@@ -106,7 +107,7 @@ TEST_CASE("UBX: NAV-HPPOSLLH is the place of its epoch, NAV-PVT says when and ho
   const std::string message = ubx_message(0x01, 0x14, precise.text());
   const Geodetic place{(47.5 + 34e-9) * kRadPerDeg, (-8.25 - 12e-9) * kRadPerDeg, 448.4995};
   for (const std::string& bytes : {pvt_message(pvt(0)) + message, message + pvt_message(pvt(0))}) {
-    const ReadFixes read = read_bytes(bytes + pvt_message(pvt(1000)));
+    const UbxFixes read = fixes_of_bytes(bytes + pvt_message(pvt(1000)));
     REQUIRE(read.fixes.size() == 2);
     CHECK(read.fixes[0].time == time_from_gps(2381, kNoonMs / 1e3));
     CHECK(near(read.fixes[0].position->r_e_m, ecef_from_geodetic(place), 1e-8));
@@ -123,12 +124,12 @@ TEST_CASE("UBX: what the receiver itself refuses is no fix") {
     std::uint8_t value;
   };
   // fixType none, dead reckoning, 2D, time only; not gnssFixOK; invalidLlh.
-  for (const auto& [at, value] : {Refusal{20, 0}, Refusal{20, 1}, Refusal{20, 2}, Refusal{20, 5},
-                                  Refusal{21, 0}, Refusal{78, 1}}) {
-    CAPTURE(at);
+  for (const Refusal& r : {Refusal{20, 0}, Refusal{20, 1}, Refusal{20, 2}, Refusal{20, 5},
+                           Refusal{21, 0}, Refusal{78, 1}}) {
+    CAPTURE(r.at);
     Bytes refused = pvt(0);
-    refused.set<std::uint8_t>(at, value);
-    const ReadFixes read = read_bytes(pvt_message(refused) + pvt_message(pvt(1000)));
+    refused.set<std::uint8_t>(r.at, r.value);
+    const UbxFixes read = fixes_of_bytes(pvt_message(refused) + pvt_message(pvt(1000)));
     CHECK(read.fixes.size() == 1);
     CHECK(read.summary.clean());
   }
@@ -141,12 +142,12 @@ TEST_CASE("UBX: a damaged byte costs its message, wherever it is") {
     CAPTURE(at);
     std::string damaged = second;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x55);
-    const ReadFixes read = read_bytes(first + damaged + third);
+    const UbxFixes read = fixes_of_bytes(first + damaged + third);
     CHECK(read.fixes.size() == 2);
     // Without its sync or with another class it is nobody's message.
     if (at > 2) CHECK(read.summary.damaged_lines() == 1);
   }
-  const ReadFixes cut = read_bytes(first + second.substr(0, 50));
+  const UbxFixes cut = fixes_of_bytes(first + second.substr(0, 50));
   CHECK(cut.fixes.size() == 1);
   CHECK(cut.summary.count(LineDamage::kCutShort) == 1);
   CHECK(contains(cut.summary.messages.at(0), "log.ubx: byte 100: cut short"));
@@ -154,8 +155,9 @@ TEST_CASE("UBX: a damaged byte costs its message, wherever it is") {
 
 TEST_CASE("UBX: NMEA, RTCM and whatever else between the messages is foreign") {
   const std::string rtcm("\xD3\x00\x04\xB5\x62\x02\xB5\x00", 8);
-  const ReadFixes read = read_bytes("$GNGGA,120000.00,,,,,0,,,,,,,,*6E\r\n" + pvt_message(pvt(0)) +
-                                    rtcm + ubx_message(0x0A, 0x04, "v1") + pvt_message(pvt(1000)));
+  const UbxFixes read =
+      fixes_of_bytes("$GNGGA,120000.00,,,,,0,,,,,,,,*6E\r\n" + pvt_message(pvt(0)) + rtcm +
+                     ubx_message(0x0A, 0x04, "v1") + pvt_message(pvt(1000)));
   CHECK(read.fixes.size() == 2);
   CHECK(read.summary.clean());
 }
@@ -169,7 +171,7 @@ TEST_CASE("UBX: positions alone, without a week: times of the week, over its end
     return ubx_message(0x01, 0x14, p.text());
   };
   const std::string over_the_end = precise(604'799'000) + precise(0) + precise(1000);
-  const ReadFixes read = read_bytes(over_the_end);
+  const UbxFixes read = fixes_of_bytes(over_the_end);
   REQUIRE(read.fixes.size() == 3);
   CHECK(read.fixes[2].time == time_from_seconds(604'801.0));
   REQUIRE(read.summary.notes.size() == 1);
@@ -177,7 +179,7 @@ TEST_CASE("UBX: positions alone, without a week: times of the week, over its end
   Bytes time_gps;
   time_gps.add<std::uint32_t>(604'799'000).add<std::int32_t>(0).add<std::int16_t>(2381);
   time_gps.add<std::int8_t>(18).add<std::uint8_t>(7).add<std::uint32_t>(20);
-  const ReadFixes of_week = read_bytes(ubx_message(0x01, 0x20, time_gps.text()) + over_the_end);
+  const UbxFixes of_week = fixes_of_bytes(ubx_message(0x01, 0x20, time_gps.text()) + over_the_end);
   REQUIRE(of_week.fixes.size() == 3);
   CHECK(of_week.fixes[0].time == time_from_gps(2381, 604'799.0));
   CHECK(of_week.fixes[2].time == time_from_gps(2382, 1.0));
@@ -186,7 +188,7 @@ TEST_CASE("UBX: positions alone, without a week: times of the week, over its end
 TEST_CASE("UBX: bytes without an end and without a message are given up") {
   const TempDir dir;
   const std::string zeros(std::size_t{80} << 20, '\0');
-  const ReadFixes read = read_file(dir.gzip_file("a", pvt_message(pvt(0)) + zeros));
+  const UbxFixes read = fixes_of_file(dir.gzip_file("a", pvt_message(pvt(0)) + zeros));
   CHECK(read.fixes.size() == 1);
   CHECK(contains(read.summary.incomplete, "no message within 64 MiB"));
   CHECK(contains(test::message_of<Error>([] { GnssLogReader("/dev/zero"); }), "is a binary file"));
@@ -196,7 +198,7 @@ TEST_CASE("UBX: a receiver's file is read to its last fix") {
   const std::filesystem::path path =
       std::filesystem::path(LEEWAY_SHARED_DIR) / "data" / "formats" / "nav-pvt.ubx";
   if (!std::filesystem::exists(path)) return;
-  const ReadFixes read = read_file(path);
+  const UbxFixes read = fixes_of_file(path);
   CHECK(read.summary.clean());
   REQUIRE(read.fixes.size() == 39);  // as an independent scanner counts
   CHECK(read.fixes.front().time == time_from_gps(2128, 473'613.0) + Duration{52'792});

@@ -60,29 +60,29 @@ std::string epoch(std::uint32_t after_noon_ms) {
 }
 const Time kNoon = time_from_gps(2381, 4 * 86400 + 43200);
 
-struct ReadImu {
+struct UbxSamples {
   std::vector<ImuIncrement> increments{};
   LogSummary summary{};
 };
 
-ReadImu read_file(const std::filesystem::path& path) {
+UbxSamples samples_of_file(const std::filesystem::path& path) {
   ImuLogReader reader(path);
   CHECK(reader.layout() == "u-blox UBX");
-  ReadImu read;
+  UbxSamples read;
   while (const auto inc = reader.next()) read.increments.push_back(*inc);
   read.summary = reader.summary();
   return read;
 }
 
-ReadImu read_bytes(const std::string& bytes) {
+UbxSamples samples_of_bytes(const std::string& bytes) {
   const TempDir dir;
-  return read_file(dir.file("log.ubx", bytes));
+  return samples_of_file(dir.file("log.ubx", bytes));
 }
 
 TEST_CASE("UBX: rates and forces that come apart are joined at the times of the rates") {
   // Forces at 0, 100, 200 ms, rates at 5, 105 ms: both linear in time.
-  const ReadImu read = read_bytes(accel(1000, 0) + gyro(1005, 4096) + accel(1100, 1024) +
-                                  gyro(1105, 8192) + accel(1200, 2048));
+  const UbxSamples read = samples_of_bytes(accel(1000, 0) + gyro(1005, 4096) + accel(1100, 1024) +
+                                           gyro(1105, 8192) + accel(1200, 2048));
   CHECK(read.summary.clean());
   REQUIRE(read.increments.size() == 1);  // the first sample starts the clock
   CHECK(read.increments[0].time == time_from_seconds(1.105));
@@ -106,7 +106,7 @@ TEST_CASE("UBX: NAV-PVT of the same log tell the time of the sensors, whose cloc
     bytes += gyro(tag(t_s), 4096) + accel(tag(t_s), k);
     if (k % 100 == 5) bytes += epoch(static_cast<std::uint32_t>(10 * (k - 5)));
   }
-  const ReadImu read = read_bytes(bytes);
+  const UbxSamples read = samples_of_bytes(bytes);
   CHECK(read.summary.clean());
   REQUIRE(read.increments.size() > 29'000);
   // A sample of ours from its specific force, which counts: where it is, and where it is said to
@@ -137,7 +137,7 @@ TEST_CASE("UBX: ESF-RAW has many samples in a message, and a clock of 24 bits") 
     bytes += ubx_message(0x10, 0x03, b.text());
     if (k % 10 == 0) bytes += epoch(static_cast<std::uint32_t>(100 * k));
   }
-  const ReadImu read = read_bytes(bytes);
+  const UbxSamples read = samples_of_bytes(bytes);
   CHECK(read.summary.clean());
   // All but those before the first epoch, and the one that starts the clock.
   CHECK(read.increments.size() == 1000 - 10 - 1);
@@ -152,7 +152,7 @@ TEST_CASE("UBX: a receiver's sensors at rest") {
   const std::filesystem::path path =
       std::filesystem::path(LEEWAY_SHARED_DIR) / "data" / "formats" / "esf-meas.ubx";
   if (!std::filesystem::exists(path)) return;
-  const ReadImu read = read_file(path);
+  const UbxSamples read = samples_of_file(path);
   // Eight rates, of which the last forces surround seven and one starts the clock; what follows is
   // of another log, whose times go back.
   CHECK(read.increments.size() == 6);
@@ -163,7 +163,7 @@ TEST_CASE("UBX: a receiver's sensors at rest") {
 }
 
 TEST_CASE("UBX: a log without sensors says what must be recorded") {
-  const ReadImu read = read_bytes(epoch(0) + epoch(1000));
+  const UbxSamples read = samples_of_bytes(epoch(0) + epoch(1000));
   CHECK(contains(read.summary.messages.at(0), "ESF-RAW or ESF-MEAS of the IMU"));
 }
 

@@ -43,15 +43,15 @@ std::string sensor_logger(double from_s, int rows,
 Eigen::Vector3d rate_at(double t_s) { return {0.1 * t_s, 0.2, -0.3}; }
 Eigen::Vector3d force_at(double t_s) { return {1.0, -t_s, 9.8}; }
 
-struct ReadImu {
+struct PhoneImu {
   std::vector<ImuIncrement> increments{};
   LogSummary summary{};
 };
 
-ReadImu read_folder(const TempDir& dir) {
+PhoneImu read_folder(const TempDir& dir) {
   ImuLogReader reader(dir / "");
   CHECK(reader.layout() == "phone folder");
-  ReadImu read;
+  PhoneImu read;
   while (const auto inc = reader.next()) read.increments.push_back(*inc);
   read.summary = reader.summary();
   return read;
@@ -61,7 +61,7 @@ std::string refusal_of(const TempDir& dir) {
   return test::message_of<Error>([&] { ImuLogReader reader(dir / ""); });
 }
 
-void check_samples(const ReadImu& read) {
+void check_samples(const PhoneImu& read) {
   CHECK(read.summary.clean());
   REQUIRE(read.increments.size() > 90);
   for (const ImuIncrement& inc : read.increments) {
@@ -82,7 +82,7 @@ TEST_CASE("Sensor Logger: a folder of a file for each sensor, their times apart"
              return Eigen::Vector3d::Zero();
            }));
   dir.file("GyroscopeUncalibrated.csv", kSensorLoggerHeader);
-  const ReadImu read = read_folder(dir);
+  const PhoneImu read = read_folder(dir);
   CHECK(read.increments.size() == 98);  // the last rate is behind all forces, the first starts
   check_samples(read);
 }
@@ -95,7 +95,7 @@ TEST_CASE("Sensor Logger: acceleration without gravity, and gravity, are added")
   dir.file("Accelerometer.csv", sensor_logger(0.0, 100, [&](double t_s) -> Eigen::Vector3d {
              return force_at(t_s) - gravity_at(t_s);
            }));
-  const ReadImu read = read_folder(dir);
+  const PhoneImu read = read_folder(dir);
   check_samples(read);
   CHECK(contains(read.summary.notes.at(0), "Standardise Units & Frames"));
 }
@@ -136,7 +136,7 @@ TEST_CASE("phyphox: titles with units, and any separator of its exports") {
   }
   dir.file("Gyroscope.csv", rates);
   dir.file("Accelerometer.csv", forces);
-  const ReadImu read = read_folder(dir);
+  const PhoneImu read = read_folder(dir);
   REQUIRE(read.increments.size() == 49);
   for (const ImuIncrement& inc : read.increments) {
     CHECK(near(inc.dtheta_b_rad, Eigen::Vector3d(inc.dt_s * Eigen::Vector3d(0.5, -0.25, 0.125)),

@@ -30,20 +30,21 @@ struct Seen {
   std::vector<OdometerSpeed> speeds{};
 };
 
-const Trajectory& town() {
-  static const Trajectory kTown =
+const Trajectory& town_drive() {
+  static const Trajectory kTownDrive =
       car_drive({.origin = {56.0 * kRadPerDeg, 37.0 * kRadPerDeg, 150.0},
                  .initial_rest_s = 10.0,
                  .duration_s = kDriveS});
-  return kTown;
+  return kTownDrive;
 }
 
 Seen seen(const ImuErrorModel& imu, double position_sigma_m, std::uint64_t seed) {
-  static const std::vector<ImuIncrement> kTruth = true_increments(town(), kDriveRateHz, kDriveS);
+  static const std::vector<ImuIncrement> kTruth =
+      true_increments(town_drive(), kDriveRateHz, kDriveS);
   GnssErrorModel gnss;
   gnss.position_sigma_n_m.setConstant(position_sigma_m);
   gnss.velocity_sigma_n_mps.setConstant(0.05);
-  test::Recording log = test::record(town(), kTruth, imu, gnss, 1.0, 1.0, seed);
+  test::Recording log = test::record(town_drive(), kTruth, imu, gnss, 1.0, 1.0, seed);
   Seen s{std::move(log.imu), std::move(log.fixes), {}};
   for (const GnssFix& fix : s.fixes) {
     s.speeds.push_back({fix.time - duration_from_seconds(0.1), fix.velocity->v_e_mps.norm()});
@@ -94,7 +95,7 @@ const Finding* find(const LogLook& look, const std::string& about) {
   return found == look.findings.end() ? nullptr : &*found;
 }
 
-struct Fault {
+struct LogFault {
   std::string name{};
   std::string about{};
   std::string remedy{};  ///< or how it begins
@@ -103,7 +104,7 @@ struct Fault {
 
 Eigen::Vector3d ned(double n, double e, double d) { return {n, e, d}; }
 
-std::vector<Fault> imu_faults() {
+std::vector<LogFault> imu_log_faults() {
   const auto force = [](double factor) {
     return [factor](Seen& s) {
       each_increment(s, [&](ImuIncrement& inc) { inc.dv_b_mps *= factor; });
@@ -129,7 +130,7 @@ std::vector<Fault> imu_faults() {
       {"gravity for the force against it", "gyro-unit", "--column gx=-", force(-1.0)}};
 }
 
-std::vector<Fault> fix_faults() {
+std::vector<LogFault> fix_log_faults() {
   const auto velocity = [](const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& change) {
     return [change](Seen& s) { each_velocity(s, change); };
   };
@@ -191,12 +192,12 @@ TEST_CASE("right logs: no finding but notes, seeds 1 to 10" * doctest::test_suit
 
 TEST_CASE("every fault of a kind is certain, and its remedy is the one that mends it" *
           doctest::test_suite("heavy")) {
-  std::vector<Fault> faults = imu_faults();
-  for (Fault& fault : fix_faults()) faults.push_back(std::move(fault));
+  std::vector<LogFault> faults = imu_log_faults();
+  for (LogFault& fault : fix_log_faults()) faults.push_back(std::move(fault));
   for (std::uint64_t seed = 1; seed <= kDriveSeeds; ++seed) {
     // A bias of the car-grade part, up to 0.9 m/s^2, would be the gravity that was removed.
     const Seen right = seen(imu_class_model(ImuClass::kTactical, RangeEnd::kMid), 2.5, seed);
-    for (const Fault& fault : faults) {
+    for (const LogFault& fault : faults) {
       CAPTURE(seed);
       CAPTURE(fault.name);
       Seen wrong = right;
@@ -244,7 +245,7 @@ TEST_CASE("clocks 0.3 s apart and velocities 0.2 s late: both are measured, with
   for (GnssFix& fix : s.fixes) {
     const double t_s = to_seconds(fix.time);
     fix.velocity->v_e_mps +=
-        truth_at(town(), t_s - kLateS).nav.v_e_mps - truth_at(town(), t_s).nav.v_e_mps;
+        truth_at(town_drive(), t_s - kLateS).nav.v_e_mps - truth_at(town_drive(), t_s).nav.v_e_mps;
     fix.time += duration_from_seconds(kClockS);
   }
   const LogLook look = look_at(s);
@@ -261,8 +262,9 @@ TEST_CASE("an antenna ahead of the axle leads the turns, and is no clock that is
   gnss.position_sigma_n_m.setConstant(0.02);
   gnss.velocity_sigma_n_mps.setConstant(0.05);
   gnss.lever_arm_b_m = {2.0, 0.0, -1.0};
-  const auto truth = true_increments(town(), kDriveRateHz, kDriveS);
-  test::Recording log = test::record(town(), truth, automotive_mems_model(), gnss, 1.0, 1.0, 1);
+  const auto truth = true_increments(town_drive(), kDriveRateHz, kDriveS);
+  test::Recording log =
+      test::record(town_drive(), truth, automotive_mems_model(), gnss, 1.0, 1.0, 1);
   const LogLook look = look_at({std::move(log.imu), std::move(log.fixes), {}});
   CAPTURE(look.shared.antenna_lead_m);
   CAPTURE(look.shared.clock_offset_s);
