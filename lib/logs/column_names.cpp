@@ -21,7 +21,7 @@ struct Quantity {
   std::string_view axes;
   Dimension dimension;
   std::string_view aliases;
-  bool is_of_phones{false};  ///< a common name: with another unit it is another thing
+  bool is_common{false};  ///< a common name: with another unit it is another thing
 };
 constexpr std::array kQuantities{
     Quantity{"t_s", "", Dimension::kTime,
@@ -39,14 +39,14 @@ constexpr std::array kQuantities{
     Quantity{"pos_std_?_m", "ned", Dimension::kLength, "pos_std_? pos_sigma_? position_std_?"},
     Quantity{"v?_mps", "ned", Dimension::kSpeed, "v? v_? vel_? velocity_?"},
     Quantity{"vel_std_?_mps", "ned", Dimension::kSpeed, "vel_std_? vel_sigma_? velocity_std_?"},
-    Quantity{"speed_mps", "", Dimension::kSpeed, "speed wheel_speed vehicle_speed odometer_speed"},
+    Quantity{"speed_mps", "", Dimension::kSpeed,
+             "speed ground_speed wheel_speed vehicle_speed odometer_speed velocity", true},
     Quantity{"heading_deg", "", Dimension::kAngle, "heading"},
     Quantity{"heading_sigma_deg", "", Dimension::kAngle, "heading_sigma heading_std"},
     Quantity{"horizontal_accuracy_m", "", Dimension::kLength,
              "horizontal_accuracy horizontalaccuracy", true},
     Quantity{"vertical_accuracy_m", "", Dimension::kLength, "vertical_accuracy verticalaccuracy",
              true},
-    Quantity{"ground_speed_mps", "", Dimension::kSpeed, "ground_speed speed velocity", true},
     Quantity{"course_deg", "", Dimension::kAngle, "course bearing direction", true},
     Quantity{"speed_accuracy_mps", "", Dimension::kSpeed, "speed_accuracy speedaccuracy", true},
     Quantity{"course_accuracy_deg", "", Dimension::kAngle,
@@ -210,8 +210,7 @@ std::optional<ColumnMeaning> with_suffix(const std::string& name, const std::str
   for (std::size_t at = name.find('_'); at != std::string::npos; at = name.find('_', at + 1)) {
     const Match found = match(std::string_view(name).substr(0, at));
     const std::string unit = name.substr(at + 1);
-    if (found.quantity && !found.quantity->is_of_phones &&
-        unit_named(unit, found.quantity->dimension)) {
+    if (found.quantity && unit_named(unit, found.quantity->dimension)) {
       return with_unit(found, unit, title, format);
     }
   }
@@ -265,8 +264,8 @@ ColumnMeaning meaning_of(std::string_view title, const LogFormat& format) {
   }
   const auto [stem, unit] = stem_and_unit(name);
   if (const Match found = match(stem); found.quantity) {
-    const bool is_other = found.quantity->is_of_phones && !unit.empty() &&
-                          !unit_named(unit, found.quantity->dimension);
+    const bool is_other =
+        found.quantity->is_common && !unit.empty() && !unit_named(unit, found.quantity->dimension);
     if (!is_other) return with_unit(found, unit, std::string(title), format);
   }
   if (unit.empty()) {

@@ -16,7 +16,7 @@ constexpr std::array kPhonePlace{NamedColumn{"t_s", kTimeColumn},
                                  NamedColumn{"horizontal_accuracy_m", {3, -kMaxSigma, kMaxSigma}}};
 constexpr std::array kPhoneOthers{
     NamedColumn{"vertical_accuracy_m", {4, -kMaxSigma, kMaxSigma, true}},
-    NamedColumn{"ground_speed_mps", velocity_column(5)},
+    NamedColumn{"speed_mps", velocity_column(5)},
     NamedColumn{"course_deg", {6, -360.0, 360.0, true}},
     NamedColumn{"speed_accuracy_mps", {7, -kMaxSigma, kMaxSigma, true}},
     NamedColumn{"course_accuracy_deg", {8, -360.0, 360.0, true}}};

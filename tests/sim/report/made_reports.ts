@@ -67,7 +67,7 @@ function simulatedDrive(leeway: (...words: string[]) => string, work: string): s
   writeFileSync(outages, '[{"start_s": 150, "duration_s": 30}]');
   leeway(
     "simulate", "--trajectory", "car", "--imu-class", "tactical", "--duration-s", "300",
-    "--imu-rate-hz", "100", "--seed", "1", "--out", drive,
+    "--imu-rate-hz", "100", "--seed", "1", "--out", drive, "--force",
   );
   return [
     "--imu", join(drive, "imu.csv"), "--gnss", join(drive, "gnss.csv"),
