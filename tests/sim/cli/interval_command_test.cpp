@@ -124,16 +124,16 @@ TEST_CASE(
 
 TEST_CASE("interval: the scene's own question is checked, whatever else is asked" *
           doctest::test_suite("heavy")) {
-  const auto rows = leeway("interval" + scene("town-car.toml") +
-                           "--imu automotive-mems --limit 10,30 --at 600 --json")
-                        .json();
+  const auto rows =
+      leeway("interval" + scene("town-car.toml") + "--imu automotive-mems --limit 10,30 --json")
+          .json();
   const auto& own = rows.at("results").at(0);
   CHECK(own.at("mark") != "linear");
   CHECK(own.at("confirm").at("trials") >= 8);
   // The navigator errs as the linear analysis says, by so much as 8 to 32 trials can tell.
   CHECK(std::abs(own.at("confirm").at("error_over_true").get<double>() - 1.0) < 0.2);
   const auto alone = leeway("interval" + scene("town-car.toml") +
-                            "--imu automotive-mems --limit 10 --at 600 --no-check --json")
+                            "--imu automotive-mems --limit 10 --no-check --json")
                          .json()
                          .at("results")
                          .at(0);
