@@ -21,7 +21,6 @@ constexpr double kMostCourseSigmaRad = 0.2;
 constexpr double kMostTurnRad = 2.0;  ///< of a pair: more is a reversal
 constexpr double kBreakS = 1.0;       ///< without increments: what was before is forgotten
 constexpr std::int64_t kFewPairs = 15;
-constexpr double kRateS = 0.4;  ///< over which a turn rate is taken
 constexpr double kOffsetStepS = 0.1;
 constexpr double kBelievedSigmas = 4.0;  ///< of an offset that is still believed
 /// Antennas sit at most so far ahead of the rear axle, more or less; a lorry's too.
@@ -133,30 +132,41 @@ std::optional<SharedTurns::Past> SharedTurns::at(Time t) const {
               a.dv_b_mps + share * (b.dv_b_mps - a.dv_b_mps)};
 }
 
-std::optional<double> SharedTurns::turn_rate_radps(Time t) const {
-  const Duration half = duration_from_seconds(kRateS / 2.0);
-  const std::optional<Past> before = at(t - half);
-  const std::optional<Past> after = at(t + half);
-  if (!before || !after) return std::nullopt;
-  return (after->turn_rad - before->turn_rad) / kRateS;
+std::optional<SharedTurns::Turns> SharedTurns::turns_around(Time t) const {
+  // Offsets are whole steps of the history: all fall at the same share between two of its entries.
+  const double place =
+      to_seconds(t.time_since_epoch() - first_step_ * kStep) / kStepS - (kMostSteps + kRateSteps);
+  if (!(place >= 0.0) || place + kTurns + 1.0 > static_cast<double>(history_.size())) {
+    return std::nullopt;
+  }
+  const auto first = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(first);
+  Turns turns_rad{};
+  auto past = history_.begin() + static_cast<std::ptrdiff_t>(first);
+  double before_rad = past->turn_rad;
+  for (double& turn_rad : turns_rad) {
+    const double after_rad = (++past)->turn_rad;
+    turn_rad = before_rad + share * (after_rad - before_rad);
+    before_rad = after_rad;
+  }
+  return turns_rad;
 }
 
 void SharedTurns::judge(const Pair& pair) {
   const double y = std::remainder(pair.to.angle_rad - pair.from.angle_rad, 2.0 * std::numbers::pi);
-  const auto offset = [](std::size_t k) {
-    return duration_from_seconds((static_cast<double>(k) - kMostSteps) * kStepS);
-  };
-  const bool is_whole = turn_rate_radps(pair.from.time + offset(0)) &&
-                        turn_rate_radps(pair.to.time + offset(kOffsets - 1));
-  if (!is_whole || std::abs(y) > kMostTurnRad) return;
+  const std::optional<Turns> from_rad = turns_around(pair.from.time);
+  const std::optional<Turns> to_rad = turns_around(pair.to.time);
+  if (!from_rad || !to_rad || std::abs(y) > kMostTurnRad) return;
   const double w =
       1.0 / (pair.from.sigma_rad * pair.from.sigma_rad + pair.to.sigma_rad * pair.to.sigma_rad);
+  constexpr double kRateS = 2.0 * kRateSteps * kStepS;
+  const auto over_speed = [](const Turns& turns_rad, std::size_t k, double speed_mps) {
+    return (turns_rad[k + 2 * kRateSteps] - turns_rad[k]) / (kRateS * speed_mps);
+  };
   for (std::size_t k = 0; k < kOffsets; ++k) {
-    const Time from = pair.from.time + offset(k);
-    const Time to = pair.to.time + offset(k);
-    const double x = at(to)->turn_rad - at(from)->turn_rad;
+    const double x = (*to_rad)[k + kRateSteps] - (*from_rad)[k + kRateSteps];
     const double z =
-        *turn_rate_radps(to) / pair.to.speed_mps - *turn_rate_radps(from) / pair.from.speed_mps;
+        over_speed(*to_rad, k, pair.to.speed_mps) - over_speed(*from_rad, k, pair.from.speed_mps);
     Sums& s = sums_[k];
     s.x += w * x;
     s.z += w * z;

@@ -44,6 +44,9 @@ class SharedTurns {
   static constexpr double kStepS = to_seconds(kStep);
   static constexpr int kMostSteps = 200;  ///< 20 s: leap seconds are below
   static constexpr std::size_t kOffsets = 2 * kMostSteps + 1;
+  static constexpr int kRateSteps = 2;  ///< on both sides, over which a turn rate is taken
+  static constexpr std::size_t kTurns = kOffsets + 2 * kRateSteps;
+  using Turns = std::array<double, kTurns>;
 
   struct Course {
     Time time{};
@@ -87,7 +90,9 @@ class SharedTurns {
   void judge_gain(const Pair& pair);
   /// Integrals at a time; nothing outside the history.
   std::optional<Past> at(Time t) const;
-  std::optional<double> turn_rate_radps(Time t) const;
+  /// Turns of the gyros at a time, for every offset and kRateSteps beyond; nothing where the
+  /// history has not all of them.
+  std::optional<Turns> turns_around(Time t) const;
   Line line(std::size_t k) const;
 
   std::deque<Past> history_{};
