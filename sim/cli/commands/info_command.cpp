@@ -32,8 +32,14 @@ void place(const std::filesystem::path& file, sim::LogsToInspect& logs) {
   if (!std::filesystem::is_regular_file(file) && !std::filesystem::is_directory(file)) {
     throw Error(file.string() + ": is no file and no folder; info looks at logs more than once");
   }
-  const std::string not_imu = refusal([&] { ImuLogReader(file, logs.imu_options); });
-  const std::string not_gnss = refusal([&] { GnssLogReader(file, logs.gnss_options); });
+  // A binary log opens as one of either sensor: a record tells.
+  const auto require_record = [&file](auto reader) {
+    if (!reader.next()) throw Error(file.string() + ": has no record of such a sensor");
+  };
+  const std::string not_imu =
+      refusal([&] { require_record(ImuLogReader(file, logs.imu_options)); });
+  const std::string not_gnss =
+      refusal([&] { require_record(GnssLogReader(file, logs.gnss_options)); });
   const auto set = [&file](std::filesystem::path& path, const char* what) {
     if (path == file) return;
     if (!path.empty())
