@@ -19,7 +19,6 @@ constexpr double kHourS = 3600.0;
 
 /// A finding is made of a figure that is so many of its sigmas away.
 constexpr double kSigmas = 5.0;
-constexpr double kCorrelated = 0.8;
 constexpr double kExplainedShare = 0.3;
 constexpr double kFactorTolerance = 0.15;
 /// Change of acceleration of a vehicle in traffic: what the trapezoid of two velocities leaves.
@@ -112,7 +111,7 @@ std::vector<Finding> time_line_findings(const TimeFigures& imu, const TimeFigure
 
 std::vector<Finding> turn_findings(const TurnMatch& turns, const SharedFigures& shared,
                                    double imu_step_s) {
-  if (std::abs(turns.correlation) < kCorrelated) return {};
+  if (std::abs(turns.correlation) < kSameTurns) return {};
   std::vector<Finding> found;
   const double factor = 1.0 / turns.ratio;
   if (std::abs(factor - 1.0) > kFactorTolerance) {

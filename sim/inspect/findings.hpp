@@ -9,6 +9,9 @@
 
 namespace leeway::sim {
 
+/// Correlation of turns from which those of two logs are the same.
+inline constexpr double kSameTurns = 0.8;
+
 /// Of one IMU log: unit of the specific force, channels, gaps.
 std::vector<Finding> imu_findings(const ImuFigures& imu);
 

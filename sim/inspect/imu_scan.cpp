@@ -28,14 +28,6 @@ void ThinnedMedian::add(double value) {
   every_ *= 2;
 }
 
-double ThinnedMedian::median() const {
-  if (values_.empty()) return kUnseen;
-  std::vector<double> sorted = values_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
-}
-
 void FullScale::add(const Eigen::Vector3d& value) {
   const double magnitude = value.cwiseAbs().maxCoeff();
   if (magnitude < largest_ * (1.0 - kRounding)) return;

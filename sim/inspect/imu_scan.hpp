@@ -9,6 +9,7 @@
 
 #include "leeway/sensors/imu.hpp"
 #include "leeway/sim/inspect/log_look.hpp"
+#include "leeway/sim/tools/quantile.hpp"
 #include "sim/inspect/record_times.hpp"
 
 namespace leeway::sim {
@@ -17,7 +18,7 @@ namespace leeway::sim {
 class ThinnedMedian {
  public:
   void add(double value);
-  double median() const;  ///< NaN of none
+  double median() const { return quantile_of(values_, 0.5); }  ///< NaN of none
 
  private:
   static constexpr std::size_t kMost = 4096;

@@ -4,14 +4,11 @@
 #include <optional>
 #include <utility>
 
-#include "leeway/logs/scalar_log.hpp"
 #include "leeway/sim/inspect/log_inspector.hpp"
 #include "sim/inspect/findings.hpp"
 
 namespace leeway::sim {
 namespace {
-
-constexpr double kMatched = 0.8;  ///< correlation of turns that are the same
 
 /// The records of one log, to be taken up to a time.
 template <class Reader, class Record>
@@ -42,11 +39,11 @@ class Taken {
   std::optional<Record> next_{};
 };
 
+}  // namespace
+
 ScalarColumns odometer_columns() {
   return {OdometerSpeed::kColumns[0], OdometerSpeed::kColumns[1], OdometerSpeed::kLargest};
 }
-
-}  // namespace
 
 std::optional<ClockOffset> find_clock_offset(LogsToInspect logs) {
   LogLook look = inspect(logs).look;
@@ -57,7 +54,7 @@ std::optional<ClockOffset> find_clock_offset(LogsToInspect logs) {
     look = inspect(logs).look;
   }
   const double offset_s = look.shared.clock_offset_s;
-  if (!std::isfinite(offset_s) || !(look.shared.turn_correlation > kMatched)) return std::nullopt;
+  if (!std::isfinite(offset_s) || !(look.shared.turn_correlation > kSameTurns)) return std::nullopt;
   return ClockOffset{to_seconds(logs.gnss_options.time_offset - told) + offset_s,
                      look.shared.clock_offset_sigma_s};
 }

@@ -107,11 +107,8 @@ bool is_repetition(const GnssFix& a, const GnssFix& b) {
          (!a.velocity || a.velocity->v_e_mps == b.velocity->v_e_mps);
 }
 
-/// Horizontally where there is a velocity; else by the way from the fix before.
-double speed_of(const GnssFix& fix, const std::optional<GnssFix>& before) {
-  if (fix.velocity) {
-    return ned_velocity(fix, geodetic_from_ecef(fix.position->r_e_m)).head<2>().norm();
-  }
+/// By the way from the fix before.
+double speed_between(const std::optional<GnssFix>& before, const GnssFix& fix) {
   if (!before || fix.time <= before->time) return 0.0;
   return (fix.position->r_e_m - before->position->r_e_m).norm() /
          to_seconds(fix.time - before->time);
@@ -136,7 +133,8 @@ void OwnVelocity::add(const GnssFix& fix) {
   const Eigen::Vector3d v_before_mps = v_n_mps_;
   place_ = place;
   if (fix.velocity) v_n_mps_ = ned_velocity(fix, place);
-  counts_.fastest_mps = std::max(counts_.fastest_mps, speed_of(fix, before));
+  const double speed_mps = fix.velocity ? v_n_mps_.head<2>().norm() : speed_between(before, fix);
+  counts_.fastest_mps = std::max(counts_.fastest_mps, speed_mps);
   const bool is_step = before && before->velocity && fix.velocity &&
                        to_seconds(fix.time - before->time) <= kLongestStepS;
   if (!is_step) {

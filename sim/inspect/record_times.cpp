@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "leeway/sim/tools/quantile.hpp"
+
 namespace leeway::sim {
 namespace {
 
@@ -25,10 +27,7 @@ void RecordTimes::add(Time t) {
 void RecordTimes::decide() {
   const std::vector<double> steps_s = std::exchange(first_steps_s_, {});
   if (steps_s.empty()) return;
-  std::vector<double> sorted = steps_s;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  figures_.step_s = *middle;
+  figures_.step_s = quantile_of(steps_s, 0.5);
   is_decided_ = true;
   for (const double step_s : steps_s) judge(step_s);
 }

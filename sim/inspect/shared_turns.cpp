@@ -21,21 +21,20 @@ constexpr double kMostCourseSigmaRad = 0.2;
 constexpr double kMostTurnRad = 2.0;  ///< of a pair: more is a reversal
 constexpr double kBreakS = 1.0;       ///< without increments: what was before is forgotten
 constexpr std::int64_t kFewPairs = 15;
-constexpr double kOffsetStepS = 0.1;
 constexpr double kBelievedSigmas = 4.0;  ///< of an offset that is still believed
 /// Antennas sit at most so far ahead of the rear axle, more or less; a lorry's too.
 constexpr double kLeadSigmaM = 3.0;
 constexpr double kSingular = 1e-6;  ///< speeds and turns that tell too little apart
 
-/// How far from the best offset others fit almost as well: minima beside it count.
+/// How many steps from the best offset others fit almost as well: minima beside it count.
 template <class Residuals>
-double reach_s(const Residuals& residuals, std::size_t best, double more) {
+std::size_t reach(const Residuals& residuals, std::size_t best, double more) {
   std::size_t steps = 0;
   for (std::size_t k = 0; k < residuals.size(); ++k) {
     if (residuals[k] - residuals[best] < more)
       steps = std::max(steps, k > best ? k - best : best - k);
   }
-  return kOffsetStepS * static_cast<double>(steps);
+  return steps;
 }
 
 }  // namespace
@@ -231,9 +230,10 @@ TurnMatch SharedTurns::match() const {
   const double after = residuals_rad2[best + 1];
   const double bend = before - 2.0 * residuals_rad2[best] + after;
   m.offset_s = kStepS * (static_cast<double>(best) - kMostSteps + 0.5 * (before - after) / bend);
-  m.offset_sigma_s = std::max(
-      kStepS * std::sqrt(2.0 * each / bend),
-      reach_s(residuals_rad2, best, each * kBelievedSigmas * kBelievedSigmas) / kBelievedSigmas);
+  const std::size_t believed =
+      reach(residuals_rad2, best, each * kBelievedSigmas * kBelievedSigmas);
+  m.offset_sigma_s = kStepS * std::max(std::sqrt(2.0 * each / bend),
+                                       static_cast<double>(believed) / kBelievedSigmas);
   return m;
 }
 

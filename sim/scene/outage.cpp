@@ -4,9 +4,9 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "leeway/earth/error.hpp"
+#include "sim/tools/json_error.hpp"
 
 namespace leeway::sim {
 
@@ -41,8 +41,7 @@ std::vector<Outage> read_outages(const std::filesystem::path& path) {
       outages.push_back(outage);
     }
   } catch (const nlohmann::json::exception& error) {
-    const std::string_view what = error.what();  // "[json.exception.parse_error.101] ..."
-    throw Error(path.string() + ": " + std::string(what.substr(what.find("] ") + 2)) + kWanted);
+    throw Error(path.string() + ": " + in_words(error) + kWanted);
   } catch (const MissingNumber& missing) {
     throw Error(path.string() + ": outage " + std::to_string(outages.size() + 1) +
                 " has no number '" + missing.key + "'" + kWanted);

@@ -5,6 +5,7 @@
 
 #include "leeway/earth/rotation.hpp"
 #include "leeway/sim/inspect/inspect_logs.hpp"
+#include "sim/tools/json_error.hpp"
 
 namespace leeway::cli {
 namespace {
@@ -112,9 +113,8 @@ FuseJob job_of_drive(const FuseLogs& logs, const std::filesystem::path& folder) 
       set_truth_window(job.input, Eigen::Vector2d(window.get<std::array<double, 2>>().data()));
     }
   } catch (const Json::exception& error) {
-    const std::string_view what = error.what();  // "[json.exception.out_of_range.403] ..."
     throw Error(
-        meta_path.string() + ": " + std::string(what.substr(what.find("] ") + 2)) +
+        meta_path.string() + ": " + sim::in_words(error) +
         R"(; wanted: {"mount_rpy_deg": [r, p, y], "reference_window_s": [from, to] or null})");
   }
   const std::filesystem::path outages = folder / "outages.json";

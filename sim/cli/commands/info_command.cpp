@@ -1,7 +1,5 @@
 #include <algorithm>
 
-#include "leeway/logs/scalar_log.hpp"
-#include "leeway/navigator/aidings.hpp"
 #include "leeway/sim/inspect/inspect_logs.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/log_options.hpp"
@@ -49,9 +47,7 @@ void place(const std::filesystem::path& file, sim::LogsToInspect& logs) {
   if (not_imu.empty()) set(logs.imu, "IMU");
   if (not_gnss.empty()) set(logs.gnss, "GNSS");
   if (not_imu.empty() || not_gnss.empty()) return;
-  const ScalarColumns odometer{OdometerSpeed::kColumns[0], OdometerSpeed::kColumns[1],
-                               OdometerSpeed::kLargest};
-  if (refusal([&] { ScalarLogReader(file, odometer); }).empty()) {
+  if (refusal([&] { ScalarLogReader(file, sim::odometer_columns()); }).empty()) {
     return set(logs.odometer, "odometer");
   }
   const bool is_imu = not_imu.find("missing column") == std::string::npos;

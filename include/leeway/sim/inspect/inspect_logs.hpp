@@ -9,6 +9,7 @@
 
 #include "leeway/logs/gnss_log.hpp"
 #include "leeway/logs/imu_log.hpp"
+#include "leeway/logs/scalar_log.hpp"
 #include "leeway/sim/inspect/log_look.hpp"
 
 namespace leeway::sim {
@@ -35,6 +36,9 @@ struct InspectedLogs {
 /// @param progress  called now and then with the time reached; may be empty
 /// @throws Error when a file cannot be read.
 InspectedLogs inspect(const LogsToInspect& logs, const std::function<void(Time)>& progress = {});
+
+/// Columns of the log of an odometer.
+ScalarColumns odometer_columns();
 
 /// What is to be added to GNSS times, and how sure that is.
 struct ClockOffset {
